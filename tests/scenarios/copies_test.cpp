@@ -107,7 +107,7 @@ world::World with(const sensors::SensorType& type) {
       {"features", "inputs [\"laser\"]"},
       {"tracks", "inputs [\"features\" \"localization\"]"},
       {"location", "inputs [\"localization\" \"gps\"] choose \"weighted\""},
-      {"aggregate", "inputs [\"gyro\"] expression \"2 * gyro.rate_rad_s\""},
+      {"aggregate", "inputs [\"gyro\"] quantity \"rate_rad_s\""},
   };
   const auto found = settings.find(type.name);
   std::string sensor = (found == settings.end() ? "" : found->second) + " latency 0.05 )\n";
