@@ -43,7 +43,7 @@ world::World camera_world(double rgb = 1.0) {
 
 std::unique_ptr<Controller> make_driver(const world::World& world, std::vector<Setting> numbers = {}) {
   Settings settings("controller 'lane-camera'", std::move(numbers));
-  return lane_camera_controller.make_driver({world}, settings);
+  return lane_camera_controller.make({world}, settings);
 }
 
 /// Lane of a robot in a world whose lane begins at the origin along x, with constant curvature.
