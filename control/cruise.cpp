@@ -13,11 +13,12 @@ namespace sf::control {
 
 namespace {
 
-constexpr double kApproach = 0.5;   // [1/s] change of the speed per error of the gap
-constexpr double kBend = 4.0;       // [m] on either side, over which the curvature is a mean
-constexpr double kFastTurn = 1.0;   // [rad/s]
-constexpr double kStops = 1.0;      // [m] before the end of an open lane
-constexpr double kFullTurn = 10.0;  // [rad] cars never turn in place
+constexpr double kApproach = 0.5;          // [1/s] change of the speed per error of the gap
+constexpr double kBend = 4.0;              // [m] on either side, over which the curvature is a mean
+constexpr double kFastTurn = 1.0;          // [rad/s]
+constexpr double kStandstillSpeed = 0.05;  // [m/s]
+constexpr double kStops = 1.0;             // [m] before the end of an open lane
+constexpr double kFullTurn = 10.0;         // [rad] cars never turn in place
 
 }  // namespace
 
@@ -84,7 +85,7 @@ base::Twist Cruise::step(const ControllerInput& input) {
   const double reach = std::max(settings_.preview * input.state.velocity.forward, 3.0);
   const double bend = std::max(std::abs(curvature_at(here.s)), std::abs(curvature_at(here.s + 2.0 * reach)));
   double speed = speed_behind(input, here);
-  stop_reason_ = speed > 0.0 ? "" : "a robot is ahead of it";
+  stop_reason_ = speed > kStandstillSpeed ? "" : "a robot is ahead of it";
   if (bend > 0.0) speed = std::min(speed, std::sqrt(settings_.sideways / bend));
   done_ = !closed_ && ahead(here.s, s_.back()) < kStops;
   if (done_) return {};

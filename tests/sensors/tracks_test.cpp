@@ -111,7 +111,7 @@ TEST(Tracks, ACarAheadIsTrackedWithinItsStatedErrorsByItsClosingSpeed) {
   const world::World world = world::build_world(
       "radar.world",
       "define car position( size [4 2 1.5] velocity_bounds [-40 40 0 0 0 0 -90 90] )\n"
-      "car( name \"r0\" encoder( per_count 0.01 slip 0.001 )\n"
+      "car( name \"r0\" encoder( per_count 0.01 slip 0.001 track 1.5 )\n"
       "  radar( targets 4 range [1 120] fov 60 noise [0.2 0.3 0.1] rate 10 pose6 [2 0 -0.9 0 0 0] )\n"
       "  derived( type \"localization\" inputs [\"encoder\"] rate 20 )\n"
       "  derived( type \"tracks\" inputs [\"radar\" \"localization\"] speed 10 agility 1 extent 2 rate 10 ) )\n"
@@ -135,7 +135,7 @@ TEST(Tracks, ACarAheadIsTrackedWithinItsStatedErrorsByItsClosingSpeed) {
       EXPECT_NEAR(row[2], 12.0, 0.5) << "along the line of sight";
       EXPECT_NEAR(row[sensors::kTrackAheadAt], 60.0 - 8.0 * t, 1.5);
       const double variance = row[sensors::kTrackCovarianceAt + 7];  // of vx
-      EXPECT_LT(variance, 0.04);
+      EXPECT_LT(variance, 0.1);
       nees += (row[2] - 12.0) * (row[2] - 12.0) / variance, ++count;
     }
   }
