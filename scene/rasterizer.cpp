@@ -103,7 +103,7 @@ class Scan {
   alignas(64) double sines_[kWidth];  ///< of the angles to the faces; 0 without one
   std::uint32_t grazing_ = 0;         ///< bit mask
   std::uint32_t terrain_hits_ = 0;    ///< bit mask of beams that meet the terrain,
-  // and of these, if cosines or normals are wanted:
+  // and of these, if cosines, normals or surfaces are wanted:
   glm::dvec3 terrain_normals_[kWidth];
 };
 
@@ -303,7 +303,7 @@ void Scan::meet_terrain(const BeamTile& tile, std::uint32_t vector) {
   Marching& marching = marching_[vector % kMarchings];
   grazing_ |= marching.finish(ranges_, hits_, s_.counts);
   terrain_hits_ = marching.met();
-  if (out_.cosines.empty() && out_.normals.empty()) return;
+  if (out_.cosines.empty() && out_.normals.empty() && out_.sink == nullptr) return;
   for (std::uint32_t rest = terrain_hits_; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::uint32_t>(__builtin_ctz(rest));
     const std::uint32_t beam = kWidth * vector + i;
