@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,7 +49,7 @@ world::World fleet_in(const LidarScene& scene, bool colours) {
 }
 
 struct Method : Timing {
-  std::optional<farm::Farm> farm;
+  std::unique_ptr<farm::Farm> farm;
   std::unique_ptr<SpatialCaster> embree;
 };
 
@@ -96,7 +95,8 @@ class Fleet {
  private:
   void add(const char* name, const world::World& world) {
     methods_.emplace_back().method = name;
-    methods_.back().farm.emplace(world, device_, farm::FarmOptions{.noise = false, .threads = kThreads});
+    methods_.back().farm =
+        std::make_unique<farm::Farm>(world, device_, farm::FarmOptions{.noise = false, .threads = kThreads});
     methods_.back().farm->subscribe_all();
   }
   void move(double tick) {
