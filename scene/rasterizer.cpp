@@ -29,7 +29,8 @@ class Scan {
       terrain_.emplace(*scene.terrain.field, base::relative(scene.terrain.X_WF, X_WS), range_max);
     if (terrain_ && terrain_->side > 0) build_horizon(*terrain_, horizon_);
   }
-  bool cast(const BeamTile& tile);
+  /// @param next tile that will be cast
+  bool cast(const BeamTile& tile, const BeamTile& next);
   /// Casts only the vectors with uncertain beams. @param cast the tile's beams from the device, in a scene without
   /// terrain
   bool finish(const BeamTile& tile, std::span<const CastBeam> cast);
@@ -346,7 +347,7 @@ bool Scan::end(const BeamTile& tile) {
   return flagged_;
 }
 
-bool Scan::cast(const BeamTile& tile) {
+bool Scan::cast(const BeamTile& tile, const BeamTile& next) {
   draw(tile, used_vectors(tile));
   const bool terrain = terrain_ && !stays_above(tile);
   terrain_hits_ = 0;
@@ -355,6 +356,7 @@ bool Scan::cast(const BeamTile& tile) {
     measure(tile, v);
     if (terrain) meet_terrain(tile, v);
     write(tile, v);
+    prefetch_beams(next, v);
   }
   return end(tile);
 }
@@ -396,7 +398,8 @@ bool scan_tiles(Scratch& s, const RigidTransform& X_WS, std::span<const BeamTile
   Scan scan(s, X_WS, range_max, scene, out);
   bool flagged = false;
   for (std::size_t i = 0; i < tiles.size(); ++i)
-    flagged = cast.empty() ? scan.cast(tiles[i]) : scan.finish(tiles[i], cast.subspan(i * kTileBeams, kTileBeams));
+    flagged = cast.empty() ? scan.cast(tiles[i], tiles[std::min(i + 1, tiles.size() - 1)])
+                           : scan.finish(tiles[i], cast.subspan(i * kTileBeams, kTileBeams));
   return flagged;
 }
 

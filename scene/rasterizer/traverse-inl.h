@@ -107,6 +107,15 @@ HWY_INLINE void prefetch(const void* from, std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(from) + i);
 }
 
+/// Prefetches a vector's part of a tile.
+HWY_INLINE void prefetch_beams(const BeamTile& tile, std::uint32_t vector) {
+  constexpr std::size_t kBoxes = sizeof(tile.vectors) / kTileVectors;
+  const std::uint32_t i = kWidth * vector;
+  for (const float* row : {tile.x, tile.y, tile.z}) prefetch(row + i, kWidth * sizeof(float));
+  for (const double* row : {tile.dx, tile.dy, tile.dz}) prefetch(row + i, kWidth * sizeof(double));
+  prefetch(reinterpret_cast<const char*>(&tile.vectors) + kBoxes * vector, kBoxes);
+}
+
 /// Draws a mesh. Beams are rotated into its frame only if the tile may see a part of it.
 HWY_INLINE void draw_mesh(Scratch& s, const BeamTile& tile, const SceneMesh& mesh) {
   const SurfaceTree& tree = *mesh.tree;
