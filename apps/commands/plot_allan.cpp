@@ -28,7 +28,7 @@ namespace {
 constexpr std::size_t kMostPanels = 16;
 
 /// One quantity of a sensor.
-struct Quantity {
+struct Measured {
   std::string name;
   std::size_t first = 0, axes = 1;       ///< numbers of a reading
   std::function<double(double)> stated;  ///< square of the Allan deviation at a time [s]
@@ -38,11 +38,11 @@ struct Quantity {
 struct AllanSensor {
   std::string name;
   double interval = 0.0;  ///< [s] between readings
-  std::vector<Quantity> quantities;
+  std::vector<Measured> quantities;
   std::vector<const record::ReadingSample*> readings;
 };
 
-std::vector<Quantity> quantities_of(const sensors::SensorSet& sensor_set, const record::ReadingSample& reading) {
+std::vector<Measured> quantities_of(const sensors::SensorSet& sensor_set, const record::ReadingSample& reading) {
   if (reading.type == sensors::kGyro) {
     const double noise = sensor_set.settings_of<sensors::Gyro>(reading.type, reading.mover)[reading.sensor].noise;
     const double interval = 1.0 / sensor_set.of(reading.type, reading.mover)[reading.sensor].rate;
@@ -100,7 +100,7 @@ void warn_of_motion(const record::Recording& recording, const world::World& worl
   }
 }
 
-viz::Panel panel_of(const AllanSensor& sensor, const Quantity& quantity) {
+viz::Panel panel_of(const AllanSensor& sensor, const Measured& quantity) {
   viz::Panel panel{sensor.name, "Allan deviation, " + quantity.name, {}};
   std::vector<double> samples(sensor.readings.size());
   for (std::size_t axis = 0; axis < quantity.axes; ++axis) {
@@ -214,7 +214,7 @@ viz::SeriesOptions allan_figure(const record::Recording& recording, const world:
       throw base::InputError(recording.file, 0,
                              fmt::format("--allan: '{}' has {}; expected at least 4", sensor.name,
                                          counted(sensor.readings.size(), "reading")));
-    for (const Quantity& quantity : sensor.quantities) figure.panels.push_back(panel_of(sensor, quantity));
+    for (const Measured& quantity : sensor.quantities) figure.panels.push_back(panel_of(sensor, quantity));
     ++drawn;
   }
   figure.subtitle = fmt::format("{}: {}", recording.info.world, counted(sensors.size(), "sensor"));
