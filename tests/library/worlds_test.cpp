@@ -112,7 +112,9 @@ TEST(Worlds, ARestartForgetsTheReadingsOfTheLastEpisode) {
       EXPECT_TRUE(same(found.times.subspan(1), expected.times) && same(found.fresh.subspan(1), expected.fresh) &&
                   same(found.bounds.subspan(1), expected.bounds) && same(found.sigma.subspan(1), expected.sigma))
           << type << step;
-      if (found.hits != nullptr) EXPECT_TRUE(same(found.hits_of(1), expected.hits_of(0))) << type << step;
+      if (found.hits != nullptr) {
+        EXPECT_TRUE(same(found.hits_of(1), expected.hits_of(0))) << type << step;
+      }
       EXPECT_FALSE(std::isnan(found.row(0)[0])) << "the other world goes on";
     }
     go(worlds, 1), go(alone, 1);
