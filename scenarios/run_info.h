@@ -22,7 +22,7 @@ struct RunSettings {
   bool too_near_min = false;  ///< surfaces nearer than a sensor's minimum range are recorded as that minimum
   record::Naming naming;      ///< of topics and frames
   record::ImageMessages images = record::ImageMessages::png;  ///< of cameras
-  std::string faults = {};    ///< of sensors (faults_text); empty: none
+  std::string faults = {};                                    ///< of sensors (faults_text); empty: none
 };
 
 /// [m] Largest rounding of a range recorded by base::rep117_range: one float32 step below range_max, where a range that
