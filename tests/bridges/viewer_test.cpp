@@ -400,7 +400,7 @@ TEST(SceneJson, CamerasHaveTheirLensAndOpticalFrame) {
   sensor.standard = {image};
   info.movers[0].sensors = {sensor};
   const std::string json = scene_json({world, sensor_set, info}, ViewerMode::run);
-  const std::size_t begin = json.find("\"camera\":{");
+  const std::size_t begin = json.find("\"camera\":{\"image\"");
   ASSERT_LT(begin, json.size());
   const std::string camera = json.substr(begin, json.find('}', begin) - begin);
   for (const char* const part : {"\"image\":\"/left/image\"", "\"size\":[64,48]", "\"focal\":[50.0,51.0]",
