@@ -114,6 +114,7 @@ class Fleet {
     const Cost cost = since(start);
     if (readings.size() != reports_.size()) fmt::print("{} of {} readings\n", readings.size(), reports_.size());
     if (!keep) return cost;
+    kept_ = reports_[0].time;
     depths_.assign(reports_.size(), {}), labels_.assign(reports_.size(), {});
     for (const base::ReadingBlock& r : readings) {
       depths_[r.mover].assign(r.values.begin(), r.values.end());
@@ -130,14 +131,14 @@ class Fleet {
       embree.cast(X_WS, ranges_);
       const Cost cost = now() - start;
       sum.wall_s += cost.wall_s, sum.cpu_s += cost.cpu_s;
-      if (!depths_.empty()) compare(embree, m);
+      if (kept_ == reports_[0].time) compare(embree, m);
     }
     return sum;
   }
   void compare(const SpatialCaster& embree, std::size_t m) {
     for (std::size_t i = 0; i < beams_.size(); ++i) {
       const std::uint32_t label = labels_[m][i];
-      if (label < reports_.size()) continue;  // a robot
+      if (label != base::kNoHit && label + 1 != depth_.models.size()) continue;  // a robot
       const double depth = std::min(kRange, ranges_[i] * beams_[i].x);
       ++agreement_.pixels;
       agreement_.labels += (embree.labels()[i] != 0 || depth >= kRange) != (label == base::kNoHit);
@@ -153,7 +154,8 @@ class Fleet {
   std::vector<Method> methods_;
   std::vector<base::Report> reports_;
   std::vector<double> ranges_;
-  std::vector<std::vector<double>> depths_;  ///< of the farm's last tick, by mover
+  std::int64_t kept_ = -1;                   ///< [ns] the tick of these, since methods take turns
+  std::vector<std::vector<double>> depths_;  ///< of the farm's depths, by mover
   std::vector<std::vector<std::uint32_t>> labels_;
   Agreement agreement_;
 };
