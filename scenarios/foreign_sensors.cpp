@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "sensors/gps.h"
+#include "sensors/imu.h"
 #include "sensors/own_sensors.h"
 #include "world/stage/build_world.h"
 
@@ -68,9 +69,10 @@ bool is_filled_in(const sensors::SensorType& type, std::string_view column) {
   return type.id == sensors::kGps && column == "satellites";
 }
 
-/// True for the last columns of receivers without the key `altitude`, whose readings do not have them.
-bool is_left_out(const SensorText& sensor, const sensors::SensorType& type, std::string_view column) {
-  return type.id == sensors::kGps && (column == "altitude_m" || column == "vdop") && sensor.value("altitude").empty();
+/// Returns the key without which readings lack a column; empty: none.
+std::string_view key_of(const sensors::SensorType& type, std::string_view column) {
+  if (type.id == sensors::kGps && (column == "altitude_m" || column == "vdop")) return "altitude";
+  return type.id == sensors::kImu && column.starts_with("orientation_") ? "orientation" : "";
 }
 
 }  // namespace
@@ -99,8 +101,10 @@ ForeignSensor bind_sensor(const std::string& file, const ForeignInput& input, co
       fail(fmt::format("sensor type '{}' has no column '{}'", sensor.type->name, name));
   for (const sensors::Column& column : sensor.type->columns) {
     const auto stated = std::ranges::find(columns, column.name, &std::pair<std::string, std::string>::first);
-    if (is_left_out(input.sensor, *sensor.type, column.name)) {
-      if (stated != columns.end()) fail(fmt::format("column '{}' of gps needs altitude = 1", column.name));
+    const std::string_view key = key_of(*sensor.type, column.name);
+    if (!key.empty() && input.sensor.value(key).empty()) {
+      if (stated != columns.end())
+        fail(fmt::format("column '{}' of {} needs {} = 1", column.name, sensor.type->name, key));
       continue;
     }
     const std::string from = stated == columns.end() ? std::string(column.name) : stated->second;

@@ -12,6 +12,7 @@
 #include "sensors/camera.h"
 #include "sensors/gps.h"
 #include "sensors/image_packets.h"
+#include "sensors/imu.h"
 #include "sensors/laser_packets.h"
 #include "sensors/lidar.h"
 #include "sensors/lidar_packets.h"
@@ -279,9 +280,9 @@ void add_map(std::span<const std::uint8_t> payload, Fields& out) {
 /// @param elements its rows
 void add_columns(const sensors::SensorType& type, std::uint32_t elements, std::span<const std::uint8_t> payload,
                  Fields& out) {
-  constexpr std::size_t kHead = 4, kNumber = 4;  // [bytes] of receivers, which may have their first columns only
-  const std::size_t width =
-      type.id == sensors::kGps ? (payload.size() - kHead) / (kNumber * elements) : sensors::element_width(type);
+  constexpr std::size_t kHead = 4, kNumber = 4;  // [bytes] of sensors that may have their first columns only
+  const bool partial = type.id == sensors::kGps || type.id == sensors::kImu;
+  const std::size_t width = partial ? (payload.size() - kHead) / (kNumber * elements) : sensors::element_width(type);
   std::vector<double> values(elements * width);
   type.read({.elements = elements}, payload, type.id, sensors::WireFormat::farm, values);
   std::size_t first = 0;

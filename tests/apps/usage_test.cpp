@@ -306,7 +306,7 @@ TEST(Usage, WrongArgumentsAreRejectedInOneLine) {
            {{"sense", world, "--sensor", "1"}, "roomba1 has no sensor 1; it has laser 0"},  // beyond the last
            {{"sense", world, "--sensor", "65535"}, "roomba1 has no sensor 65535"},          // the largest valid index
            {{"sense", world, "--robot", "tag3"}, "tag3 has no sensor"},      // exists, but has no sensors
-           {{"sense", world, "--type", "radar"}, "--type: expected laser"},  // another program's word
+           {{"sense", world, "--type", "sonic"}, "--type: expected laser"},  // another program's word
            {{"sense", world, "--robot", "bob"}, "no robot 'bob'; robots with sensors: roomba1, roomba2"},
            {{"serve", world, "--radio", "nan"}, "from 0 to 1e+09"},  // NaN would pass comparisons
            {{"serve", world, "--radio", "inf"}, "from 0 to 1e+09"},  // its square overflows

@@ -410,7 +410,8 @@ class Cameras(unittest.TestCase):
         self.assertEqual(sim.valid("camera").sum(axis=1).tolist(), [8, 3])
         self.assertEqual(sim.valid("lidar").sum(axis=1).tolist(), [4, 2])
         self.assertEqual(sim.models[sim.hits("camera")[1, 1]], "wall")
-        self.assertEqual(sim.hits("lidar")[1, 1], sensorfarm.NONE)
+        self.assertEqual(sim.hits("lidar")[1, 0], sensorfarm.NONE, "behind")
+        self.assertEqual(sim.models[sim.hits("lidar")[1, 1]], "wall")
 
 
 class Processes(unittest.TestCase):

@@ -10,6 +10,7 @@
 #include "netio/packets.h"
 #include "sensors/camera.h"
 #include "sensors/gps.h"
+#include "sensors/imu.h"
 #include "sensors/image_packets.h"
 #include "sensors/laser_packets.h"
 #include "sensors/lidar.h"
@@ -65,8 +66,8 @@ void restore_spec(std::uint8_t type, std::span<const std::uint8_t> payload, Deco
     out.spec.pitch = map.geometry.cell;
     out.block.X_WS = {map.geometry.left, map.geometry.top, 0.0, 0.0};
     out.block.flags = map.flags;
-  } else if (type == sensors::kGps) {
-    out.spec.width = static_cast<std::uint32_t>((payload.size() - 4) / 4);  // with or without an altitude
+  } else if (type == sensors::kGps || type == sensors::kImu) {
+    out.spec.width = static_cast<std::uint32_t>((payload.size() - 4) / 4);  // with or without their last columns
   }
 }
 
