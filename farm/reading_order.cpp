@@ -12,9 +12,11 @@ std::uint64_t late_rank(const sensors::SensorSpec& row, std::uint8_t type) {
   return std::uint64_t{row.mover} << 31 | std::uint64_t{type} << 23 | row.sensor;
 }
 
-/// The other readings follow type by type, derived types last.
+/// The other readings follow type by type: those that are computed from another type's after these, and derived
+/// sensors last.
 std::uint64_t prompt_rank(const sensors::SensorType& type, std::size_t row) {
-  return std::uint64_t{1} << 63 | std::uint64_t{type.derived_from != 0} << 62 | std::uint64_t{type.id} << 32 | row;
+  const std::uint64_t last = type.derived != nullptr, later = type.derived_from != 0;
+  return std::uint64_t{1} << 63 | last << 62 | later << 61 | std::uint64_t{type.id} << 32 | row;
 }
 
 }  // namespace

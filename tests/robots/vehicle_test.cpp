@@ -212,7 +212,7 @@ TEST(Vehicle, CliffsThrowNothing) {
         fastest = std::max(fastest, glm::length(body.v)), highest = std::max(highest, body.p.z - start);
       }
       EXPECT_LT(fastest, speed + 2.0) << rise << " m, at " << speed << " m/s";
-      EXPECT_LT(highest, 0.5 * speed * speed / 9.81 + 1.5) << rise << " m, at " << speed << " m/s";
+      EXPECT_LT(highest, 0.5 * speed * speed / 9.81 + 2.5) << rise << " m, at " << speed << " m/s";
     }
   }
 }

@@ -24,7 +24,7 @@ constexpr int kWidth = 640, kHeight = 480;
 Image photograph(const std::string& lens) {
   std::string text =
       "model( pose [2.03 0 0.1 0] size [0.02 2.2 1.8] color \"white\" )\n"
-      "position( size [0.4 0.4 0.5] origin [0 0 0 0] camera( resolution [640 480] rgb 1 samples 8 pose6 [0 0 0.75 0 0 "
+      "position( size [0.4 0.4 0.5] origin [0 0 0 0] camera( resolution [640 480] rgb 1 samples 8 pose6 [0 0 0.45 0 0 "
       "0] " +
       lens + " ) )\n";
   for (int row = 0; row <= kChessboard.rows; ++row)

@@ -90,7 +90,8 @@ TEST(WorldFiles, RoombaKeepsItsBumper) {
   const World world = load_world(kShared + "/stage/roomba.world", kWithLasers);
   EXPECT_EQ(world.movers.size(), 1u);
   EXPECT_EQ(world.unmodelled, (std::map<std::string, int>{{"bumper", 1}}));
-  EXPECT_EQ(world.warnings.size(), 2u) << warnings_of(world);  // and the floor plan stops robots
+  // The floor plan stops robots, and the size of the bumper has four numbers.
+  EXPECT_EQ(world.warnings.size(), 3u) << warnings_of(world);
   EXPECT_EQ(world.movers[0].body.size(), 16u);
   EXPECT_NEAR(world.movers[0].radius, 0.165, 1e-3);
 }

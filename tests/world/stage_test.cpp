@@ -458,8 +458,8 @@ TEST(Stage, UnmodelledTypesAreKeptCountedAndReportedOnce) {
   const World world = read_world(
       "position( fiducial() camera() )\nposition( pose [1 0 0 0] fiducial( fov 60 ) bumper( size [.1 .1 .1 0] ) )");
   EXPECT_EQ(world.unmodelled, (std::map<std::string, int>{{"bumper", 1}, {"camera", 1}, {"fiducial", 2}}));
-  EXPECT_EQ(world.warnings.size(), 3u) << warnings_of(world);
-  EXPECT_EQ(world.movers[0].body.size(), 8u);  // the camera is a box; a fiducial finder has no body
+  EXPECT_EQ(world.warnings.size(), 4u) << warnings_of(world);  // and a size has four numbers
+  EXPECT_EQ(world.movers[0].body.size(), 8u);                  // the camera is a box; a fiducial finder has no body
 }
 
 TEST(Stage, UnknownTypeIsKeptWithASuggestion) {
