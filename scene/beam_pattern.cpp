@@ -36,6 +36,7 @@ class Grouping {
   using Range = std::pair<std::size_t, std::size_t>;
   void split(Range range, std::uint32_t size, double tall, std::vector<Range>& out);
   std::size_t bisect(Range range, std::uint32_t size, double tall);
+  void sort_by_key();
   bool narrow(Range range, double cosine) const;
   double tile_weight() const;
   glm::dvec3 mean(Range range) const;
@@ -48,6 +49,11 @@ class Grouping {
   bool along_row() const { return row_ >= kWidth; }
   std::vector<std::uint32_t> order_;
   std::vector<std::array<double, 2>> angles_;  ///< [rad] azimuth and elevation
+  struct Keyed {
+    std::int32_t key;
+    std::uint32_t beam;
+  };
+  std::vector<Keyed> keyed_, sorted_;  ///< scratch memory
 };
 
 glm::dvec3 Grouping::mean(Range range) const {
@@ -104,11 +110,35 @@ std::size_t Grouping::bisect(Range range, std::uint32_t size, double tall) {
     extent[side] = key(*high, side) - key(*low, side);
   }
   const int side = tall * extent[1] > extent[0] ? 1 : 0;
-  const auto rounded = [&](std::uint32_t i) { return std::lround(1e6 * key(i, side)); };  // rings despite rounding
-  std::stable_sort(order_.begin() + range.first, order_.begin() + range.second,
-                   [&](std::uint32_t i, std::uint32_t j) { return rounded(i) < rounded(j); });
+  keyed_.clear();
+  for (std::size_t i = range.first; i < range.second; ++i)  // rounded, so that rings stay together
+    keyed_.push_back({static_cast<std::int32_t>(std::lround(1e6 * key(order_[i], side))), order_[i]});
+  sort_by_key();
+  for (std::size_t i = range.first; i < range.second; ++i) order_[i] = keyed_[i - range.first].beam;
   const std::size_t units = (range.second - range.first + size - 1) / size;
   return range.first + units / 2 * size;
+}
+
+/// Sorts `keyed_` in linear time where it is long; equal keys keep their order.
+void Grouping::sort_by_key() {
+  constexpr std::size_t kFew = 1'000;
+  constexpr unsigned kBits = 12;
+  if (keyed_.size() < kFew) {
+    std::ranges::stable_sort(keyed_, {}, &Keyed::key);
+    return;
+  }
+  const auto [low, high] = std::ranges::minmax(keyed_, {}, &Keyed::key);
+  const auto least = low.key;
+  const auto most = static_cast<std::uint32_t>(high.key - least);
+  for (unsigned shift = 0; shift < 32 && most >> shift != 0; shift += kBits) {
+    const auto digit = [&](const Keyed& k) { return static_cast<std::uint32_t>(k.key - least) >> shift & 0xFFFu; };
+    std::array<std::size_t, (1u << kBits) + 1> first{};
+    for (const Keyed& k : keyed_) ++first[digit(k) + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    sorted_.resize(keyed_.size());
+    for (const Keyed& k : keyed_) sorted_[first[digit(k)]++] = k;
+    keyed_.swap(sorted_);
+  }
 }
 
 /// Returns the smaller of two boxes: one side along the beams' first and last, or horizontal.
