@@ -18,33 +18,29 @@ namespace {
 // Orders in which the sensors are switched off: rows of kTreeSensors.
 constexpr std::array<std::size_t, 5> kFinestFirst{0, 1, 4, 2, 3}, kCoarsestFirst{3, 2, 4, 1, 0};
 
-double tree_share(std::size_t part, std::size_t whole) {
-  return whole == 0 ? NAN : static_cast<double>(part) / static_cast<double>(whole);
-}
-double tree_rms(double squares, std::size_t count) {
-  return count == 0 ? NAN : std::sqrt(squares / static_cast<double>(count));
-}
-double missed(const TreeTracks& t) { return 1.0 - tree_share(t.found, t.targets); }
+double missed(const TreeTracks& t) { return 1.0 - share_of(static_cast<double>(t.found), t.targets); }
 
 std::string tree_csv(const std::vector<TreeTracks>& all) {
   std::string text =
       "sensors,count,readings,targets,missed,position_rms_m,speed_rms_m_s,nees,motion_right,switches,objects,false,"
       "moving_walls\n";
   for (const TreeTracks& t : all)
-    text +=
-        fmt::format("\"{}\",{},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{},{},{},{}\n", tree_sensor_names(t.sensors),
-                    std::popcount(t.sensors), t.readings, t.targets, missed(t), tree_rms(t.position_squares, t.found),
-                    tree_rms(t.velocity_squares, t.found), t.nees / static_cast<double>(t.found),
-                    tree_share(t.right_motion, t.found), t.switches, t.tracks, t.false_tracks, t.moving_walls);
+    text += fmt::format("\"{}\",{},{},{},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{},{},{},{}\n",
+                        tree_sensor_names(t.sensors), std::popcount(t.sensors), t.readings, t.targets, missed(t),
+                        rms_of(t.position_squares, t.found), rms_of(t.velocity_squares, t.found),
+                        t.nees / static_cast<double>(t.found), share_of(static_cast<double>(t.right_motion), t.found),
+                        t.switches, t.tracks, t.false_tracks, t.moving_walls);
   return text;
 }
 
 std::string tree_row(const TreeTracks& t, const std::string& name) {
   return fmt::format("| {} | {:.1f} | {:.3f} | {:.3f} | {:.2f} | {:.1f} | {:.2f} | {:.2f} | {:.3f} |\n", name,
-                     100.0 * missed(t), tree_rms(t.position_squares, t.found), tree_rms(t.velocity_squares, t.found),
-                     t.nees / static_cast<double>(t.found), 100.0 * tree_share(t.right_motion, t.found),
+                     100.0 * missed(t), rms_of(t.position_squares, t.found), rms_of(t.velocity_squares, t.found),
+                     t.nees / static_cast<double>(t.found),
+                     100.0 * share_of(static_cast<double>(t.right_motion), t.found),
                      100.0 * static_cast<double>(t.switches) / static_cast<double>(t.targets),
-                     tree_share(t.false_tracks, t.readings), tree_share(t.moving_walls, t.readings));
+                     share_of(static_cast<double>(t.false_tracks), t.readings),
+                     share_of(static_cast<double>(t.moving_walls), t.readings));
 }
 
 std::string tree_report(const ExperimentContext& context, const TreeRun& all) {
@@ -89,11 +85,10 @@ void draw_tree(const std::vector<TreeTracks>& all, const std::string& path) {
   viz::draw_series(
       {.title = "Tracks as sensors are switched off one by one",
        .panels = {panel("missed [%]", [](const TreeTracks& t) { return 100.0 * missed(t); }),
-                  panel("position RMS [m]", [](const TreeTracks& t) { return tree_rms(t.position_squares, t.found); }),
-                  panel("velocity RMS [m/s]",
-                        [](const TreeTracks& t) { return tree_rms(t.velocity_squares, t.found); }),
+                  panel("position RMS [m]", [](const TreeTracks& t) { return rms_of(t.position_squares, t.found); }),
+                  panel("velocity RMS [m/s]", [](const TreeTracks& t) { return rms_of(t.velocity_squares, t.found); }),
                   panel("false objects per reading",
-                        [](const TreeTracks& t) { return tree_share(t.false_tracks, t.readings); })},
+                        [](const TreeTracks& t) { return share_of(static_cast<double>(t.false_tracks), t.readings); })},
        .x_name = "sensors switched off"},
       path);
 }

@@ -26,8 +26,6 @@ constexpr double kAtRest = 0.03;      // [m/s]
 constexpr double kEyeHeight = 0.02;   // [m]
 constexpr unsigned kSonarAlone = 4;
 
-using TreeRow = std::span<const double>;
-
 struct TreeRobots {
   const world::World& world;
   std::uint32_t probe = 0;
@@ -57,48 +55,27 @@ bool TreeRobots::near_surface(glm::dvec2 p) const {
 
 double speed_of(const base::Report& report) { return base::hypot(report.velocity.forward, report.velocity.left); }
 
-/// Errors of the track of one target.
-void compare_track(TreeRow row, const base::Report& truth, TreeTracks& sum) {
-  const double* const c = row.data() + sensors::kTrackCovarianceAt;
-  const double ex = row[0] - truth.X_WM.x, ey = row[1] - truth.X_WM.y;
-  const glm::dvec2 v = base::rotate(truth.X_WM.yaw, {truth.velocity.forward, truth.velocity.left});
-  ++sum.found;
-  sum.position_squares += ex * ex + ey * ey;
-  sum.velocity_squares += (row[2] - v.x) * (row[2] - v.x) + (row[3] - v.y) * (row[3] - v.y);
-  sum.nees += (c[4] * ex * ex - 2.0 * c[1] * ex * ey + c[0] * ey * ey) / (c[0] * c[4] - c[1] * c[1]) / 2.0;
-  sum.right_motion += (row[sensors::kTrackKindAt] == 2.0) == (speed_of(truth) > kAtRest);
-}
-
 void compare_tracks(TreeRobots& robots, const base::TickRecord& tick, const base::ReadingBlock& reading,
                     TreeTracks& sum) {
   ++sum.readings;
-  std::vector<TreeRow> rows;
-  for (std::size_t at = 0; at < reading.values.size(); at += sensors::kTrackNumbers) {
-    const TreeRow row = reading.values.subspan(at, sensors::kTrackNumbers);
-    if (row[sensors::kTrackValidAt] != 0.0 && row[sensors::kTrackKindAt] != 3.0) rows.push_back(row);
-  }
+  const std::vector<TrackRow> rows = object_rows(reading);
   sum.tracks += rows.size();
-  const auto away = [&](TreeRow row, std::uint32_t target) {
-    const base::Pose& X = tick.reports[target].X_WM;
-    return base::hypot(row[0] - X.x, row[1] - X.y);
-  };
   std::vector<bool> used(rows.size());
   for (const std::uint32_t target : robots.targets) {
     if (!robots.in_sight(tick, target)) continue;
     ++sum.targets;
-    std::size_t nearest = rows.size();
-    for (std::size_t k = 0; k < rows.size(); ++k)
-      if (!used[k] && away(rows[k], target) < (nearest < rows.size() ? away(rows[nearest], target) : kAssigned))
-        nearest = k;
+    const base::Report& truth = tick.reports[target];
+    const std::size_t nearest = nearest_row(rows, used, truth.X_WM, kAssigned);
     if (nearest == rows.size()) continue;
     used[nearest] = true;
-    compare_track(rows[nearest], tick.reports[target], sum);
+    sum.TrackErrors::add(rows[nearest], truth);
+    sum.right_motion += (rows[nearest][sensors::kTrackKindAt] == 2.0) == (speed_of(truth) > kAtRest);
     const double identity = rows[nearest][sensors::kTrackIdentityAt];
     const auto [last, is_new] = robots.identities.try_emplace({sum.sensors, target}, identity);
     if (!is_new && last->second != identity) ++sum.switches, last->second = identity;
   }
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const auto near = [&](std::uint32_t target) { return away(rows[k], target) < kAssigned; };
+    const auto near = [&](std::uint32_t target) { return distance_to(rows[k], tick.reports[target].X_WM) < kAssigned; };
     if (used[k] || std::ranges::any_of(robots.targets, near)) continue;
     if (!robots.near_surface({rows[k][0], rows[k][1]}))
       ++sum.false_tracks;
@@ -136,10 +113,10 @@ void add_choices(world::Mover& probe) {
 }  // namespace
 
 void TreeTracks::add(const TreeTracks& other) {
-  readings += other.readings, targets += other.targets, found += other.found, right_motion += other.right_motion;
+  TrackErrors::add(other);
+  readings += other.readings, targets += other.targets, right_motion += other.right_motion;
   switches += other.switches, tracks += other.tracks, false_tracks += other.false_tracks;
-  moving_walls += other.moving_walls, position_squares += other.position_squares;
-  velocity_squares += other.velocity_squares, nees += other.nees;
+  moving_walls += other.moving_walls;
 }
 
 void TreeRun::add(const TreeRun& other) {
@@ -162,7 +139,7 @@ TreeRun run_tree(const ExperimentContext& context, std::uint64_t seed) {
   options.threads = context.options.threads;
   Simulation simulation(world, context.device, std::move(options));
   TreeRun run;
-  for (unsigned sensors = 1; sensors <= kAllTreeSensors; ++sensors) run.tracks.push_back({.sensors = sensors});
+  for (unsigned sensors = 1; sensors <= kAllTreeSensors; ++sensors) run.tracks.emplace_back().sensors = sensors;
   TreeGrids grids(world, map_of_probe(world, robots.probe));
   std::int64_t next_look = 0;
   for (double time = 0.0; time < scenario.duration - 1e-6;) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenarios/experiment.h"
+#include "scenarios/track_errors.h"
 #include "scenarios/tree_grids.h"
 
 namespace sf::scenarios {
@@ -16,18 +17,15 @@ inline constexpr std::array<std::string_view, 5> kTreeSensors{"front laser", "ba
 inline constexpr unsigned kAllTreeSensors = (1u << kTreeSensors.size()) - 1;
 
 /// Tracks from one choice of sensors, against the truth.
-struct TreeTracks {
-  unsigned sensors = 0;                                   ///< bit k: sensor k is on
-  std::size_t readings = 0;                               ///< of tracks
-  std::size_t targets = 0;                                ///< robots in sight, over all readings
-  std::size_t found = 0;                                  ///< of these, with a track
-  std::size_t right_motion = 0;                           ///< of the found, at rest or moving as decided
-  std::size_t switches = 0;                               ///< of the identity of a robot's track
-  std::size_t tracks = 0;                                 ///< of objects, over all readings
-  std::size_t false_tracks = 0;                           ///< of nothing: neither a robot nor a surface is near
-  std::size_t moving_walls = 0;                           ///< of surfaces, taken for moving objects
-  double position_squares = 0.0, velocity_squares = 0.0;  ///< [m^2], [m^2/s^2] errors of the found
-  double nees = 0.0;                                      ///< sum of the found: position error over its covariance
+struct TreeTracks : TrackErrors {
+  unsigned sensors = 0;          ///< bit k: sensor k is on
+  std::size_t readings = 0;      ///< of tracks
+  std::size_t targets = 0;       ///< robots in sight, over all readings
+  std::size_t right_motion = 0;  ///< of the found, at rest or moving as decided
+  std::size_t switches = 0;      ///< of the identity of a robot's track
+  std::size_t tracks = 0;        ///< of objects, over all readings
+  std::size_t false_tracks = 0;  ///< of nothing: neither a robot nor a surface is near
+  std::size_t moving_walls = 0;  ///< of surfaces, taken for moving objects
 
   void add(const TreeTracks& other);
 };

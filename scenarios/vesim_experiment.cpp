@@ -14,9 +14,7 @@ namespace sf::scenarios {
 
 namespace {
 
-double vesim_share(double part, std::uint64_t whole) { return whole == 0 ? NAN : part / static_cast<double>(whole); }
-double vesim_rms(double squares, std::uint64_t count) { return std::sqrt(vesim_share(squares, count)); }
-double found_share(const VesimCell& c) { return vesim_share(static_cast<double>(c.found), c.targets); }
+double found_share(const VesimCell& c) { return share_of(static_cast<double>(c.found), c.targets); }
 
 constexpr std::array<std::string_view, 2> kSides{"ahead", "elsewhere"};
 std::string range_name(std::size_t i) {
@@ -35,8 +33,8 @@ std::string vesim_csv(const VesimRun& all) {
   std::string text = "sensors,side,range_m,targets,found,position_rms_m,velocity_rms_m_s,nees\n";
   each_cell(all, [&](std::size_t k, std::size_t side, std::size_t i, const VesimCell& c) {
     text += fmt::format("{},{},{:g},{},{},{:.4g},{:.4g},{:.4g}\n", kVesimChoices[k].name, kSides[side], kVesimRanges[i],
-                        c.targets, c.found, vesim_rms(c.position_squares, c.found),
-                        vesim_rms(c.velocity_squares, c.found), vesim_share(c.position_nees, c.found));
+                        c.targets, c.found, rms_of(c.position_squares, c.found), rms_of(c.velocity_squares, c.found),
+                        share_of(c.nees, c.found));
   });
   return text;
 }
@@ -46,8 +44,7 @@ std::string number(double value) { return std::isfinite(value) ? fmt::format("{:
 
 std::string place_json(const VesimPlace& p) {
   return fmt::format("{{\"readings\": {}, \"rms_m\": {}, \"largest_m\": {}, \"nees\": {}}}", p.readings,
-                     number(vesim_rms(p.squares, p.readings)), number(p.largest),
-                     number(vesim_share(p.nees, p.readings)));
+                     number(rms_of(p.squares, p.readings)), number(p.largest), number(share_of(p.nees, p.readings)));
 }
 
 std::string run_json(const VesimRun& run) {
@@ -57,10 +54,9 @@ std::string run_json(const VesimRun& run) {
   each_cell(run, [&](std::size_t k, std::size_t side, std::size_t i, const VesimCell& c) {
     text += fmt::format(
         "{}\n    {{\"sensors\": \"{}\", \"side\": \"{}\", \"range_m\": {:g}, \"targets\": {}, \"found\": {}, "
-        "\"position_rms_m\": {}, "
-        "\"velocity_rms_m_s\": {}}}",
+        "\"position_rms_m\": {}, \"velocity_rms_m_s\": {}}}",
         k + side + i == 0 ? "" : ",", kVesimChoices[k].name, kSides[side], kVesimRanges[i], c.targets, c.found,
-        number(vesim_rms(c.position_squares, c.found)), number(vesim_rms(c.velocity_squares, c.found)));
+        number(rms_of(c.position_squares, c.found)), number(rms_of(c.velocity_squares, c.found)));
   });
   text += "],\n  \"others\": [";
   for (std::size_t k = 0; k < kVesimChoices.size(); ++k) {
@@ -90,8 +86,8 @@ std::string cars_table(const VesimRun& all, std::size_t side) {
   each_cell(all, [&](std::size_t k, std::size_t of, std::size_t i, const VesimCell& c) {
     if (of != side || c.targets == 0) return;
     text += fmt::format("| {} | {} | {} | {:.1f} | {} | {} | {} |\n", kVesimChoices[k].name, range_name(i), c.targets,
-                        100.0 * found_share(c), figure(vesim_rms(c.position_squares, c.found)),
-                        figure(vesim_rms(c.velocity_squares, c.found)), figure(vesim_share(c.position_nees, c.found)));
+                        100.0 * found_share(c), figure(rms_of(c.position_squares, c.found)),
+                        figure(rms_of(c.velocity_squares, c.found)), figure(share_of(c.nees, c.found)));
   });
   return text;
 }
@@ -105,22 +101,20 @@ std::string vesim_report(const ExperimentContext& context, const std::vector<Ves
   for (std::size_t side = 0; side < kSides.size(); ++side) text += cars_table(all, side);
   text +=
       "\nPer reading: moving objects and objects at rest where neither a car nor a surface is, and surfaces of houses "
-      "and "
-      "trees that are taken for moving; changes of identity per 1000 readings.\n\n| sensors | ghosts | at rest | "
-      "moving walls "
-      "| changes |\n|---|---|---|---|---|\n";
+      "and trees that are taken for moving; changes of identity per 1000 readings.\n\n| sensors | ghosts | at rest | "
+      "moving walls | changes |\n|---|---|---|---|---|\n";
   for (std::size_t k = 0; k < kVesimChoices.size(); ++k) {
     const VesimTracks& t = all.tracks[k];
     text += fmt::format("| {} | {:.3f} | {:.3f} | {:.3f} | {:.1f} |\n", kVesimChoices[k].name,
-                        vesim_share(static_cast<double>(t.ghosts), t.readings),
-                        vesim_share(static_cast<double>(t.nothings), t.readings),
-                        vesim_share(static_cast<double>(t.moving_walls), t.readings),
-                        1e3 * vesim_share(static_cast<double>(t.switches), t.readings));
+                        share_of(static_cast<double>(t.ghosts), t.readings),
+                        share_of(static_cast<double>(t.nothings), t.readings),
+                        share_of(static_cast<double>(t.moving_walls), t.readings),
+                        1e3 * share_of(static_cast<double>(t.switches), t.readings));
   }
   text += "\n| position of the car | RMS [m] | largest [m] | NEES |\n|---|---|---|---|\n";
   for (const auto& [name, p] : {std::pair("satellites alone", all.gps), std::pair("fused", all.fused)})
-    text += fmt::format("| {} | {:.2f} | {:.2f} | {} |\n", name, vesim_rms(p.squares, p.readings), p.largest,
-                        figure(vesim_share(p.nees, p.readings)));
+    text += fmt::format("| {} | {:.2f} | {:.2f} | {} |\n", name, rms_of(p.squares, p.readings), p.largest,
+                        figure(share_of(p.nees, p.readings)));
   text += "\nReadings of each trial, by their hash:";
   for (const VesimRun& run : runs) text += fmt::format(" {}", base::hash_hex(run.hash));
   return text + "\n\n" + std::string(context.type.reasons) + "\n";
@@ -142,9 +136,8 @@ void draw_vesim(const VesimRun& all, const std::string& path) {
   viz::draw_series(
       {.title = "Tracks of cars ahead",
        .panels = {panel("found [%]", [](const VesimCell& c) { return 100.0 * found_share(c); }),
-                  panel("position RMS [m]", [](const VesimCell& c) { return vesim_rms(c.position_squares, c.found); }),
-                  panel("velocity RMS [m/s]",
-                        [](const VesimCell& c) { return vesim_rms(c.velocity_squares, c.found); })},
+                  panel("position RMS [m]", [](const VesimCell& c) { return rms_of(c.position_squares, c.found); }),
+                  panel("velocity RMS [m/s]", [](const VesimCell& c) { return rms_of(c.velocity_squares, c.found); })},
        .x_name = "range [m]"},
       path);
 }
@@ -165,11 +158,9 @@ std::vector<std::string> run_vesim_experiment(const ExperimentContext& context) 
 
 constexpr std::string_view kVesimReasons =
     "The tree knows the readings and their stated errors, the size of cars, and the pose at the start; the driver "
-    "alone "
-    "has the true pose. Lidars see ranges, so the speed of a new track is known after some readings; the radar "
-    "measures "
-    "the speed along its line of sight at once. The localization takes the car for one that does not move sideways, "
-    "which it does in bends. Images are not fused.";
+    "alone has the true pose. Lidars see ranges, so the speed of a new track is known after some readings; the radar "
+    "measures the speed along its line of sight at once. The localization takes the car for one that does not move "
+    "sideways, which it does in bends. Images are not fused.";
 
 }  // namespace
 

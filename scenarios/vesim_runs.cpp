@@ -32,8 +32,6 @@ constexpr double kSightStep = 2.0;                          // [m]
 constexpr double kAhead = M_PI / 4.0;                       // [rad] half of the radar's field of view
 constexpr double kSpeedSpread = 0.15, kStartSpread = 12.0;  // [-], [m] of the other cars
 
-using VesimRow = std::span<const double>;
-
 struct VesimCars {
   const world::World& world;
   world::Ground ground;
@@ -62,22 +60,6 @@ bool VesimCars::in_sight(const base::TickRecord& tick, std::uint32_t car) const 
   });
 }
 
-double away(VesimRow row, const base::Pose& X) { return base::hypot(row[0] - X.x, row[1] - X.y); }
-
-double position_nees(double ex, double ey, double xx, double xy, double yy) {
-  return (yy * ex * ex - 2.0 * xy * ex * ey + xx * ey * ey) / (xx * yy - xy * xy) / 2.0;
-}
-
-void compare_car(VesimRow row, const base::Report& truth, VesimCell& cell) {
-  const double* const c = row.data() + sensors::kTrackCovarianceAt;
-  const double ex = row[0] - truth.X_WM.x, ey = row[1] - truth.X_WM.y;
-  const glm::dvec2 v = base::rotate(truth.X_WM.yaw, {truth.velocity.forward, truth.velocity.left});
-  ++cell.found;
-  cell.position_squares += ex * ex + ey * ey;
-  cell.velocity_squares += (row[2] - v.x) * (row[2] - v.x) + (row[3] - v.y) * (row[3] - v.y);
-  cell.position_nees += position_nees(ex, ey, c[0], c[1], c[4]);
-}
-
 /// Returns the cell of a car; null if it is too far away, or hidden.
 VesimCell* cell_of(const VesimCars& cars, const base::TickRecord& tick, std::uint32_t car, VesimTracks& sum) {
   const base::Pose &X_WE = tick.reports[cars.ego].X_WM, &X_WC = tick.reports[car].X_WM;
@@ -90,32 +72,24 @@ VesimCell* cell_of(const VesimCars& cars, const base::TickRecord& tick, std::uin
 
 void compare_cars(VesimCars& cars, const base::TickRecord& tick, const base::ReadingBlock& reading, VesimTracks& sum) {
   ++sum.readings;
-  std::vector<VesimRow> rows;
-  for (std::size_t at = 0; at < reading.values.size(); at += sensors::kTrackNumbers) {
-    const VesimRow row = reading.values.subspan(at, sensors::kTrackNumbers);
-    if (row[sensors::kTrackValidAt] != 0.0 && row[sensors::kTrackKindAt] != 3.0) rows.push_back(row);
-  }
+  const std::vector<TrackRow> rows = object_rows(reading);
   std::vector<bool> used(rows.size());
   for (std::uint32_t car = 0; car < tick.reports.size(); ++car) {
     if (car == cars.ego) continue;
     const base::Report& truth = tick.reports[car];
-    std::size_t nearest = rows.size();
-    for (std::size_t k = 0; k < rows.size(); ++k)
-      if (!used[k] &&
-          away(rows[k], truth.X_WM) < (nearest < rows.size() ? away(rows[nearest], truth.X_WM) : kCarAssigned))
-        nearest = k;
+    const std::size_t nearest = nearest_row(rows, used, truth.X_WM, kCarAssigned);
     if (nearest < rows.size()) used[nearest] = true;
     VesimCell* const cell = cell_of(cars, tick, car, sum);
     if (cell == nullptr) continue;
     ++cell->targets;
     if (nearest == rows.size()) continue;
-    compare_car(rows[nearest], truth, *cell);
+    cell->add(rows[nearest], truth);
     const double identity = rows[nearest][sensors::kTrackIdentityAt];
     const auto [last, is_new] = cars.identities.try_emplace({reading.sensor, car}, identity);
     if (!is_new && last->second != identity) ++sum.switches, last->second = identity;
   }
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const auto near = [&](const base::Report& report) { return away(rows[k], report.X_WM) < kCarAssigned; };
+    const auto near = [&](const base::Report& report) { return distance_to(rows[k], report.X_WM) < kCarAssigned; };
     if (used[k] || std::ranges::any_of(tick.reports, near)) continue;
     const bool moving = rows[k][sensors::kTrackKindAt] == 2.0, surface = cars.near_surface({rows[k][0], rows[k][1]});
     sum.ghosts += moving && !surface, sum.moving_walls += moving && surface, sum.nothings += !moving && !surface;
@@ -125,7 +99,7 @@ void compare_cars(VesimCars& cars, const base::TickRecord& tick, const base::Rea
 void compare_place(const base::ReadingBlock& reading, VesimPlace& place) {
   const bool is_gps = reading.type == sensors::kGps;
   const base::Pose& X = is_gps ? reading.X_WS : reading.X_WM;
-  const VesimRow v = reading.values;
+  const std::span<const double> v = reading.values;
   if (!std::isfinite(v[0] + v[1])) return;
   const double ex = v[0] - X.x, ey = v[1] - X.y, error = base::hypot(ex, ey);
   ++place.readings;
@@ -187,9 +161,8 @@ void VesimRun::add(const VesimRun& other) {
       for (std::size_t i = 0; i < kVesimRanges.size(); ++i) {
         VesimCell& cell = sum.cells[side][i];
         const VesimCell& with = more.cells[side][i];
-        cell.targets += with.targets, cell.found += with.found;
-        cell.position_squares += with.position_squares, cell.velocity_squares += with.velocity_squares;
-        cell.position_nees += with.position_nees;
+        cell.targets += with.targets;
+        cell.add(with);
       }
   }
   add_place(gps, other.gps), add_place(fused, other.fused);

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "scenarios/experiment.h"
+#include "scenarios/track_errors.h"
 
 namespace sf::scenarios {
 
@@ -22,13 +23,9 @@ inline constexpr std::array<VesimChoice, 3> kVesimChoices{
 /// [m] ends of the classes of range
 inline constexpr std::array<double, 5> kVesimRanges{20.0, 40.0, 60.0, 80.0, 120.0};
 
-/// Tracks of the cars within one class of range. As the others below, bytes that ranks exchange.
-struct VesimCell {
-  std::uint64_t targets = 0;      ///< cars in sight, over all readings
-  std::uint64_t found = 0;        ///< of these, with a track
-  double position_squares = 0.0;  ///< [m^2] errors of the found
-  double velocity_squares = 0.0;  ///< [m^2/s^2]
-  double position_nees = 0.0;     ///< sum: position error over its covariance
+/// Tracks of the cars within one class of range. Ranks exchange the bytes of this and of the structures below.
+struct VesimCell : TrackErrors {
+  std::uint64_t targets = 0;  ///< cars in sight, over all readings
 };
 
 struct VesimTracks {
