@@ -51,9 +51,8 @@ world::World world_of(const Scenario& scenario, const world::LoadOptions& load) 
     world::Mover& mover = world.movers[row_of(scenario, world, setup.name, setup.line)];
     if (mover.is_tag && setup.actor && setup.actor->controller.name.empty()) mover.controller.clear();
     if (!setup.pose) continue;
-    const double clearance = world::clearance_of(world, mover);
-    mover.X_WM = *setup.pose;
-    if (std::isnan(mover.X_WM.z)) mover.X_WM.z = world::height_on_road(world, {mover.X_WM.x, mover.X_WM.y}, clearance);
+    const bool stands = std::isnan(setup.pose->z);
+    mover.X_WM = stands ? world::Ground(world.ramps, world.terrain).stand(mover.X_WM, *setup.pose) : *setup.pose;
   }
   world::update_extent_and_hash(world);
   for (const ObjectEvent& event : scenario.events)

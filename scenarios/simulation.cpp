@@ -503,7 +503,7 @@ void Simulation::put(std::uint32_t mover, const base::Pose& X_WM, const base::Ti
   SF_CHECK(mover < controls_.size(), "mover " + std::to_string(mover));
   base::Report report{mover, fleet_.reports()[mover].time, X_WM, {}, tilt};
   if (std::isnan(X_WM.z))
-    report.X_WM.z = world::height_on_road(world_, {X_WM.x, X_WM.y}, world::clearance_of(world_, world_.movers[mover]));
+    report.X_WM = world::Ground(world_.ramps, world_.terrain).stand(world_.movers[mover].X_WM, X_WM);
   fleet_.apply({&report, 1});
 }
 

@@ -10,7 +10,6 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "world/ground.h"
 #include "world/ros_map.h"
 #include "world/wall_tree.h"
 
@@ -264,7 +263,11 @@ std::uint32_t model_in(const WallTree& walls, const Mover& robot, const Pose& X_
 }  // namespace
 
 PlaceCheck::PlaceCheck(const World& world)
-    : world_(world), walls_(stopping(world)), known_(known_free(world)), plan_(plan_of(world)) {}
+    : world_(world),
+      ground_(world.ramps, world.terrain),
+      walls_(stopping(world)),
+      known_(known_free(world)),
+      plan_(plan_of(world)) {}
 
 std::string PlaceCheck::problem(const Mover& robot, const Pose& X_WM) const {
   const glm::dvec2 p{X_WM.x, X_WM.y};
@@ -284,7 +287,7 @@ std::string PlaceCheck::start_problem(const Mover& robot) const {
   const Pose& X = robot.X_WM;
   std::string where = robot.is_tag ? "" : problem(robot, X);
   const bool moves_in_height = !robot.dynamics.name.empty();
-  if (where.empty() && moves_in_height && X.z < Ground(world_.ramps, world_.terrain).height({X.x, X.y}, X.z) - 0.1)
+  if (where.empty() && moves_in_height && X.z < ground_.height({X.x, X.y}, X.z) - 0.1)
     where = fmt::format("{:g} m high, below the ground", X.z);
   return where.empty() ? ""
                        : fmt::format("'{}' starts at ({:g}, {:g}), {}; expected a 'pose' in free space", robot.name,

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/pose.h"
+#include "world/ground.h"
 #include "world/wall_tree.h"
 #include "world/world.h"
 
@@ -75,6 +76,7 @@ class PlaceCheck {
 
  private:
   const World& world_;
+  Ground ground_;
   WallTree walls_;              ///< walls that stop robots
   std::vector<Segment> known_;  ///< border of a map's known area; empty: everything is known
   const Model* plan_;           ///< the floor plan; null: none

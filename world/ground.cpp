@@ -11,8 +11,6 @@ namespace sf::world {
 
 namespace {
 
-constexpr double kContact = 0.01;  // [m] a body this close to a surface is on it
-
 base::BoxTree tree_of(std::span<const Ramp> ramps) {
   std::vector<base::Box> boxes;
   for (const Ramp& ramp : ramps) {
@@ -62,8 +60,7 @@ double Ground::follow(const base::Pose& from, glm::dvec2 to) const {
 }
 
 Pose Ground::stand(const Pose& from, const Pose& to) const {
-  const double above = is_flat() ? from.z : from.z - height({from.x, from.y}, from.z + kContact);
-  return {to.x, to.y, is_flat() ? above : above + height({to.x, to.y}, HUGE_VAL), to.yaw};
+  return {to.x, to.y, is_flat() ? from.z : clearance(from) + height({to.x, to.y}, HUGE_VAL), to.yaw};
 }
 
 base::Tilt Ground::tilt(const base::Pose& at, double length, double width) const {
@@ -77,8 +74,7 @@ base::Tilt Ground::tilt(const base::Pose& at, double length, double width) const
 }
 
 double clearance_of(const World& world, const Mover& mover) {
-  const base::Pose& X = mover.X_WM;
-  return X.z - Ground(world.ramps, world.terrain).height({X.x, X.y}, X.z + kContact);
+  return Ground(world.ramps, world.terrain).clearance(mover.X_WM);
 }
 
 double height_on_road(const World& world, glm::dvec2 p, double clearance) {

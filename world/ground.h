@@ -28,6 +28,8 @@ class Ground {
   /// its height above it. It climbs a rise of a road of at most kMostStep plus kMostSlope times the length of the move,
   /// passes under higher roads, drops from an edge within the move, and follows terrain of any slope.
   double follow(const base::Pose& from, glm::dvec2 to) const;
+  /// Returns the height [m] of a body above the surface that it stands on, or is above.
+  double clearance(const Pose& X_WM) const { return X_WM.z - height({X_WM.x, X_WM.y}, X_WM.z + kContact); }
   /// Returns `to` as high above the ground, or the highest road, as `from` is above what it stands on.
   Pose stand(const Pose& from, const Pose& to) const;
   /// Returns the tilt of a robot on terrain: that of the plane through the contacts of its four wheels, at the corners
@@ -36,6 +38,7 @@ class Ground {
   base::Tilt tilt(const base::Pose& at, double length, double width) const;
 
   static constexpr double kMostStep = 0.05;  ///< [m]
+  static constexpr double kContact = 0.01;   ///< [m] a body this close to a surface is on it
   static constexpr double kMostSlope = 0.5;
   /// [half widths] Pieces are this much longer at both ends, level, which closes the gaps between them on the outside
   /// of bends.

@@ -1,6 +1,7 @@
 #include "world/random_starts.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "base/random.h"
@@ -81,12 +82,14 @@ void draw_poses(World& world, std::uint32_t first, std::span<const Original> ori
     movers[row].X_WM = originals[row].mover.X_WM;
     movers[row].absent = originals[row].mover.absent;
   }
-  const Ground ground(world.ramps, world.terrain);
+  std::optional<Ground> ground;  // made only for movers that move
   for_random(originals, [&](std::uint32_t row, std::uint32_t number) {
     if (!robots && !movers[row].is_tag) return;
-    const Pose& X_WM = originals[row].mover.X_WM;
-    draw_start(movers[row], X_WM, seed, number);
-    movers[row].X_WM = ground.stand(X_WM, movers[row].X_WM);
+    const Mover& original = originals[row].mover;
+    draw_start(movers[row], original.X_WM, seed, number);
+    if (!original.random_start.places()) return;
+    if (!ground) ground.emplace(world.ramps, world.terrain);
+    movers[row].X_WM = ground->stand(original.X_WM, movers[row].X_WM);
   });
 }
 

@@ -19,22 +19,22 @@ namespace {
 
 constexpr std::size_t kMaxYaml = 1u << 20;  // bytes; a map's YAML file has only a few lines
 
-enum class Ground : std::uint8_t { wall, unknown, free };
+enum class MapCell : std::uint8_t { wall, unknown, free };
 
 // Implements map_server's rule: occ = (255 - p) / 255 (p / 255 if negated); above `occupied` is wall, below `free` is
 // free, otherwise unknown. p is the mean of the colours; in mode trinary, the mean includes alpha if the picture has
 // it.
-Ground ground_of(const RosMap& map, bool has_alpha, const std::uint8_t* rgba) {
+MapCell ground_of(const RosMap& map, bool has_alpha, const std::uint8_t* rgba) {
   const bool averaged = has_alpha && map.mode == RosMap::Mode::trinary && map.averages_alpha;
   const std::uint8_t opaque = map.mode == RosMap::Mode::scale ? 255 : 128;
-  if (has_alpha && !averaged && map.mode != RosMap::Mode::raw && rgba[3] < opaque) return Ground::unknown;
+  if (has_alpha && !averaged && map.mode != RosMap::Mode::raw && rgba[3] < opaque) return MapCell::unknown;
   const double sum = rgba[0] + rgba[1] + rgba[2];
   const double p = averaged ? (sum + rgba[3]) / 4.0 : sum / 3.0;
   const double percent = std::round(p);
-  if (map.mode == RosMap::Mode::raw && percent > 100.0) return Ground::unknown;
+  if (map.mode == RosMap::Mode::raw && percent > 100.0) return MapCell::unknown;
   const double occ = map.mode == RosMap::Mode::raw ? percent / 100.0 : (map.negate ? p : 255.0 - p) / 255.0;
-  if (occ > map.occupied) return Ground::wall;
-  return occ < map.free ? Ground::free : Ground::unknown;
+  if (occ > map.occupied) return MapCell::wall;
+  return occ < map.free ? MapCell::free : MapCell::unknown;
 }
 
 /// @param counts whether this kind of ground is solid in the grid
@@ -45,7 +45,7 @@ Bitmap read_grid(const RosMap& map, Counts&& counts, std::size_t* changed = null
   opaque.averages_alpha = false;
   return read_bitmap(map.image, [&](const PixelRow& row, std::uint8_t* solid) {
     for (std::size_t i = 0; i < row.rgba.size(); i += 4) {
-      const Ground ground = ground_of(map, row.has_alpha, row.rgba.data() + i);
+      const MapCell ground = ground_of(map, row.has_alpha, row.rgba.data() + i);
       *solid++ = counts(ground) ? 1 : 0;
       if (changed != nullptr && row.has_alpha && ground != ground_of(opaque, true, row.rgba.data() + i)) ++*changed;
     }
@@ -88,8 +88,8 @@ void add_map(World& world, const std::string& file, const std::string& text, con
   world.ros_map = file;
   try {
     std::size_t changed = 0;
-    const auto is_wall = [&](Ground ground) {
-      return ground == Ground::wall || (ground == Ground::unknown && options.unknown_is_wall);
+    const auto is_wall = [&](MapCell ground) {
+      return ground == MapCell::wall || (ground == MapCell::unknown && options.unknown_is_wall);
     };
     add_walls(world, map, read_grid(map, is_wall, &changed));
     if (changed > 0)
@@ -137,7 +137,7 @@ void add_ros_map(World& world, const std::string& file, const LoadOptions& optio
 std::vector<Segment> known_free(const World& world) {
   if (world.ros_map.empty()) return {};
   const RosMap map = map_of(world);
-  return outlines_of(map, read_grid(map, [](Ground ground) { return ground == Ground::free; }));
+  return outlines_of(map, read_grid(map, [](MapCell ground) { return ground == MapCell::free; }));
 }
 
 KnownSpace::KnownSpace(const World& world) : limited_(!world.ros_map.empty()) {
@@ -145,7 +145,7 @@ KnownSpace::KnownSpace(const World& world) : limited_(!world.ros_map.empty()) {
   const RosMap map = map_of(world);
   X_WL_ = map.X_WL;
   resolution_ = map.resolution;
-  known_ = read_grid(map, [](Ground ground) { return ground != Ground::unknown; });
+  known_ = read_grid(map, [](MapCell ground) { return ground != MapCell::unknown; });
 }
 
 bool KnownSpace::contains(glm::dvec2 at) const {
