@@ -44,6 +44,8 @@ class Operator {
   bridges::WorldChange take_world();
   void pause() { state_.paused = true; }
 
+  /// Returns whether there are bridges, which show what is published.
+  bool is_watched() const { return !bridges_.empty(); }
   std::uint32_t resets() const { return state_.runs; }
 
  private:

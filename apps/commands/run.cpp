@@ -324,7 +324,8 @@ struct Course {
   void step(scenarios::Operator& users) {
     const base::TickRecord tick = simulation.step();
     intents.clear();
-    for (const base::Report& report : tick.reports) intents.push_back(simulation.intent(report.mover));
+    if (users.is_watched())
+      for (const base::Report& report : tick.reports) intents.push_back(simulation.intent(report.mover));
     users.publish(tick, intents);
     outputs.write(tick, [&](std::int64_t time) { users.keep_pace(1e-9 * static_cast<double>(time) + world.interval); });
     simulation.settle();
