@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/elementary.h"
+#include "base/rigid_transform.h"
 #include "base/tilted_pose.h"
 
 namespace sf::robots {
@@ -103,6 +104,14 @@ base::BodyVelocity velocity_between(const base::Report& before, const base::Repo
   const base::Twist v = planar_velocity(before, after);
   const double rise = (after.X_WM.z - before.X_WM.z) / seconds_between(before, after);
   return {{v.forward, v.left, rise}, {0.0, 0.0, v.turn}};
+}
+
+WorldVelocity velocity_on_slope(const base::Report& state) {
+  constexpr double kLeastUpright = 0.3;  // cosine of the tilt
+  const glm::dvec3 up = base::rotation_of(state.tilt.roll, state.tilt.pitch, state.X_WM.yaw)[2];
+  const glm::dvec2 flat = base::rotate(state.X_WM.yaw, {state.velocity.forward, state.velocity.left});
+  const double rise = up.z > kLeastUpright ? -(flat.x * up.x + flat.y * up.y) / up.z : 0.0;
+  return {{flat.x, flat.y, rise}, state.velocity.turn * up};
 }
 
 }  // namespace sf::robots

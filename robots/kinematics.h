@@ -2,6 +2,7 @@
 // Kinematics of planar bodies: the pose after a constant twist, and states between and after reported ones.
 
 #include <cstdint>
+#include <glm/ext/vector_double3.hpp>
 
 #include "base/pose.h"
 #include "base/report.h"
@@ -40,5 +41,15 @@ base::Report interpolate(const base::Report& before, const base::Report& after, 
 /// Returns the constant velocity of a mover between two of its states, in its own frame, by the motion that
 /// `interpolate` follows. Level movers have no vertical velocity, since their height changes at ticks.
 base::BodyVelocity velocity_between(const base::Report& before, const base::Report& after);
+
+/// Velocity of a mover in the world's axes.
+struct WorldVelocity {
+  glm::dvec3 linear{};   ///< [m/s] of its origin
+  glm::dvec3 angular{};  ///< [rad/s]
+};
+
+/// Returns the velocity that a state has by its planar twist: a tilted body moves along the plane that it is parallel
+/// to, as on a slope, and turns about its upright axis.
+WorldVelocity velocity_on_slope(const base::Report& state);
 
 }  // namespace sf::robots

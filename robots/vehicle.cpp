@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/elementary.h"
+#include "robots/kinematics.h"
 
 namespace sf::robots {
 
@@ -91,14 +92,12 @@ base::Report Vehicle::move(const base::Report& from, const base::Twist& command,
 
 VehicleBody Vehicle::body_at(const base::Report& at) const {
   const glm::dmat3 R = base::rotation_of(at.tilt.roll, at.tilt.pitch, at.X_WM.yaw);
-  const glm::dvec3 centre = R * centre_, up = R[2];
-  const glm::dvec2 flat = base::rotate(at.X_WM.yaw, {at.velocity.forward, at.velocity.left});
-  // Along the ground that the body is parallel to.
-  const double rise = up.z > kLeastSlant ? -(flat.x * up.x + flat.y * up.y) / up.z : 0.0;
+  const glm::dvec3 centre = R * centre_;
+  const WorldVelocity velocity = velocity_on_slope(at);
   VehicleBody body{.p = glm::dvec3{at.X_WM.x, at.X_WM.y, at.X_WM.z} + centre,
                    .q = base::quaternion_of(at.X_WM.yaw, at.tilt),
-                   .v = {flat.x, flat.y, rise},
-                   .w = at.velocity.turn * up};
+                   .v = velocity.linear,
+                   .w = velocity.angular};
   body.v += glm::cross(body.w, centre);
   body.spin.fill(at.velocity.forward / model_.car.wheel_radius);
   return body;

@@ -22,7 +22,6 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr std::size_t kMostBeamsInAll = 100'000'000;
 constexpr std::uint32_t kNoiseId = 1u << 31;  ///< added to the numbers of cameras, in the random numbers of lidars
 
 /// Range of the longest beam to the largest depth, over that depth.
@@ -201,17 +200,13 @@ void Cameras::finish(std::size_t i, unsigned) {
 
 ParsedSensors parse_cameras(const world::World& world) {
   CameraReader reader;
-  std::size_t beams = 0;
+  BeamBudget budget("cameras", "pixels, 'samples',");
   const world::Daylight day = world::daylight_of(world);
   const bool sunny = day.elevation > 0.0 && day.sun > 0.0;
   return parse_each(world, camera_type, [&](const world::Sensor& sensor, SensorSpec& row) {
     CameraSettings s = reader.read(sensor);
     row.mode = s.mode = mode_of("camera", kCameraModes, accuracy_of(sensor), world);
-    beams += s.beams->cast_directions().size();
-    if (beams > kMostBeamsInAll)
-      refuse(sensor, "resolution",
-             fmt::format("the world's cameras have more than {} beams in all; give fewer pixels, 'samples', or robots",
-                         kMostBeamsInAll));
+    budget.add(sensor, "resolution", s.beams->cast_directions().size());
     row.elements = s.width * s.height;
     row.width = static_cast<std::uint32_t>(s.columns());
     row.across = s.width;

@@ -93,11 +93,7 @@ void read_lens(const world::Sensor& sensor, CameraSettings& s) {
 void read_depths(const world::Sensor& sensor, CameraSettings& s) {
   if (const auto range = tuple(sensor, "range", 2, "[min max]"))
     s.range_min = sensor.metres_per_unit * (*range)[0], s.range_max = sensor.metres_per_unit * (*range)[1];
-  if (!(s.range_max > 0.0 && s.range_max <= 1e4 && s.range_min >= 0.0 && s.range_min < s.range_max))
-    refuse(sensor, "range",
-           fmt::format("depths from {:g} to {:g} m; expected 0 or more, to more than that and at most "
-                       "10000 m",
-                       s.range_min, s.range_max));
+  require_range(sensor, "range", "depths", s.range_min, s.range_max, 1e4);
 }
 
 void read_colours(const world::Sensor& sensor, CameraSettings& s) {

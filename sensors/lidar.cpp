@@ -20,8 +20,6 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr std::size_t kMostBeamsInAll = 100'000'000;
-
 class Lidars : public SpatialScans {
  public:
   Lidars(const SensorContext& context, const ParsedSensors& sensors);
@@ -146,19 +144,14 @@ void Lidars::collect(std::span<base::ReadingBlock> out) {
 
 ParsedSensors parse_lidars(const world::World& world) {
   LidarReader reader;
-  std::size_t parts = 0;
+  BeamBudget budget("lidars", "'columns', 'channels',");
   return parse_each(world, lidar_type, [&](const world::Sensor& sensor, SensorSpec& row) {
     LidarSettings s = reader.read(world, sensor);
     const EchoSettings& echo = s.echo;
     row.elements = static_cast<std::uint32_t>(s.beams->directions.size());
     row.width = echo.width;
     row.mode = s.mode;
-    parts += s.beams->cast_directions().size();
-    if (parts > kMostBeamsInAll)
-      refuse(
-          sensor, "columns",
-          fmt::format("the world's lidars have more than {} beams in all; give fewer 'columns', 'channels', or robots",
-                      kMostBeamsInAll));
+    budget.add(sensor, "columns", s.beams->cast_directions().size());
     row.X_MS = planar_mount(s.X_MS);
     row.limit = row.reach = echo.range_max;
     row.dependency_radius = s.beams->times.empty() ? echo.range_max : 0.0;  // else also on earlier poses

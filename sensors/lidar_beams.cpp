@@ -126,10 +126,7 @@ void read_range(const world::Sensor& sensor, EchoSettings& s) {
   s.range_min = length(sensor, "range_min", s.range_min, -HUGE_VAL, HUGE_VAL);
   s.range_max = length(sensor, "range_max", s.range_max, -HUGE_VAL, HUGE_VAL);
   const std::string_view key = find(sensor, "range_max") != nullptr ? "range_max" : "range";
-  if (!(s.range_max > 0.0 && s.range_max <= kLongestLidarRange && s.range_min >= 0.0 && s.range_min < s.range_max))
-    refuse(sensor, key,
-           fmt::format("a range from {:g} to {:g} m; expected 0 or more, to more than that and at most {:g} m",
-                       s.range_min, s.range_max, kLongestLidarRange));
+  require_range(sensor, key, "a range", s.range_min, s.range_max, kLongestLidarRange);
 }
 
 void read_noise(const world::Sensor& sensor, EchoSettings& s) {
@@ -166,6 +163,14 @@ void read_echoes(const world::Sensor& sensor, EchoSettings& s) {
 }  // namespace
 
 std::int64_t LidarBeams::duration() const { return times.empty() ? 0 : base::nanoseconds(-std::ranges::min(times)); }
+
+void BeamBudget::add(const world::Sensor& sensor, std::string_view key, std::size_t beams) {
+  used_ += beams;
+  if (used_ > kMost)
+    refuse(
+        sensor, key,
+        fmt::format("the world's {} have more than {} beams in all; give fewer {} or robots", sensors_, kMost, fewer_));
+}
 
 std::shared_ptr<const LidarBeams> LidarReader::beams_of(const world::Sensor& sensor, std::uint32_t skip) {
   LidarLayout layout;

@@ -52,6 +52,20 @@ inline constexpr std::string_view kLidarKeys[] = {
     "range",     "range_max", "noise",           "pose6",   "directions", "rolling",    "scan_time",  "intensity",
     "incidence", "returns",   "intensity_range", "detects", "dropout",    "divergence", "beam_parts", "separation"};
 
+/// Bounds the beams of all sensors of a kind in a world.
+class BeamBudget {
+ public:
+  static constexpr std::size_t kMost = 100'000'000;
+  /// @param sensors in the plural  @param fewer remedies for an error, in its words
+  BeamBudget(std::string_view sensors, std::string_view fewer) : sensors_(sensors), fewer_(fewer) {}
+  /// @throws base::InputError, at the key, if there are more than kMost now
+  void add(const world::Sensor& sensor, std::string_view key, std::size_t beams);
+
+ private:
+  std::string_view sensors_, fewer_;
+  std::size_t used_ = 0;
+};
+
 struct BeamTable;
 
 /// Reads the settings of lidars. Lidars with equal beams share them.

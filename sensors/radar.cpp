@@ -11,6 +11,7 @@
 
 #include "base/elementary.h"
 #include "base/random.h"
+#include "robots/kinematics.h"
 #include "sensors/lidar_layout.h"
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
@@ -20,13 +21,13 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr std::size_t kMostBeamsInAll = 100'000'000;
 constexpr std::uint32_t kNoiseId = 1u << 30;  ///< added to the numbers of radars, in the random numbers of lidars
 constexpr double kDegree = M_PI / 180.0;
 
 constexpr std::uint32_t kStatic = 1u << 30;  ///< added to the rows of static models, in the numbers of targets
 
-/// What one beam meets. A target's number is its mover's row in a world alone, or its model's.
+/// The hit of one beam. A target is numbered by its mover's row in one copy of the world, or by its static model's row
+/// plus kStatic.
 struct Echo {
   std::uint32_t target = 0;
   double range = 0.0;  ///< [m]
@@ -48,15 +49,11 @@ std::vector<SpatialScanner> scanners_of(const std::vector<RadarSettings>& radars
   return scanners;
 }
 
-/// Returns the velocity [m/s] of the body's point at `p`, both in the world. A tilted body moves along the plane that
-/// it is parallel to, as on a slope, and turns about its upright axis.
+/// Returns the velocity [m/s] of the body's point at `p`, both in the world.
 glm::dvec3 velocity_at(const base::Report& state, const glm::dvec3& p) {
-  constexpr double kUpright = 0.3;  // least cosine of the tilt
-  const glm::dvec3 up = base::rotation_of(state.tilt.roll, state.tilt.pitch, state.X_WM.yaw)[2];
-  const glm::dvec2 flat = base::rotate(state.X_WM.yaw, {state.velocity.forward, state.velocity.left});
-  const double rise = up.z > kUpright ? -(flat.x * up.x + flat.y * up.y) / up.z : 0.0;
+  const robots::WorldVelocity velocity = robots::velocity_on_slope(state);
   const glm::dvec3 arm = p - glm::dvec3{state.X_WM.x, state.X_WM.y, state.X_WM.z};
-  return glm::dvec3{flat.x, flat.y, rise} + glm::cross(state.velocity.turn * up, arm);
+  return velocity.linear + glm::cross(velocity.angular, arm);
 }
 
 class Radars : public SpatialScans {
@@ -215,10 +212,7 @@ RadarSettings read_radar(const world::Sensor& sensor) {
   RadarSettings s{.X_MS = spatial_mount(sensor)};
   if (const auto range = tuple(sensor, "range", 2, "[min max]"))
     s.range_min = sensor.metres_per_unit * (*range)[0], s.range_max = sensor.metres_per_unit * (*range)[1];
-  if (!(s.range_min >= 0.0 && s.range_min <= s.range_max && s.range_max > 0.0 && s.range_max <= kLongestLidarRange))
-    refuse(sensor, "range",
-           fmt::format("a range from {:g} to {:g} m; expected 0 or more, to more than that and at most {:g} m",
-                       s.range_min, s.range_max, kLongestLidarRange));
+  require_range(sensor, "range", "a range", s.range_min, s.range_max, kLongestLidarRange);
   s.with_static = whole(sensor, "static", 0, 0, 1) == 1;
   const std::string row = "[range bearing speed elevation]";
   s.noise = read_row(sensor, "noise", 1, row);
@@ -234,19 +228,14 @@ namespace {
 
 ParsedSensors parse_radars(const world::World& world) {
   std::map<std::vector<double>, std::shared_ptr<const LidarBeams>> known;
-  std::size_t beams = 0;
+  BeamBudget budget("radars", "'columns', 'channels',");
   return parse_each(world, radar_type, [&](const world::Sensor& sensor, SensorSpec& row) {
     RadarSettings s = read_radar(sensor);
     const LidarLayout layout = read_layout(sensor);
     auto& shared = known[layout.description()];
     if (!shared) shared = std::make_shared<LidarBeams>(beams_of(layout));
     s.beams = shared;
-    beams += layout.beams();
-    if (beams > kMostBeamsInAll)
-      refuse(sensor, "columns",
-             fmt::format("the world's radars have more than {} beams in all; give fewer 'columns', 'channels', or "
-                         "robots",
-                         kMostBeamsInAll));
+    budget.add(sensor, "columns", layout.beams());
     row.X_MS = planar_mount(s.X_MS);
     row.elements = whole(sensor, "targets", 32, 1, kMostTargets);
     row.reach = s.range_max;

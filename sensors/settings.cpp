@@ -136,6 +136,14 @@ std::optional<std::size_t> preset_of(const world::Sensor& sensor, std::span<cons
                      base::suggest(setting->text, names)));
 }
 
+void require_range(const world::Sensor& sensor, std::string_view key, std::string_view what, double min, double max,
+                   double most) {
+  if (max > 0.0 && max <= most && min >= 0.0 && min < max) return;
+  refuse(sensor, key,
+         fmt::format("{} from {:g} to {:g} m; expected 0 or more, to more than that and at most {:g} m", what, min, max,
+                     most));
+}
+
 base::RigidTransform spatial_mount(const world::Sensor& sensor) {
   base::RigidTransform X_MB = base::transform_of(sensor.X_MS);
   if (const auto pose = tuple(sensor, "pose6", 6, "[x y z roll pitch yaw]")) {

@@ -50,6 +50,10 @@ const Preset* preset_of(const world::Sensor& sensor, const Preset (&presets)[cou
   return row ? &presets[*row] : nullptr;
 }
 
+/// Refuses limits of ranges unless 0 <= min < max <= most [m]. @param what they are, with an article or in the plural
+void require_range(const world::Sensor& sensor, std::string_view key, std::string_view what, double min, double max,
+                   double most);
+
 /// Returns the mount of a spatial sensor in the mover's frame: `pose`, then `pose6`, at half of its model's height.
 base::RigidTransform spatial_mount(const world::Sensor& sensor);
 /// Returns a mount without its roll and pitch.
