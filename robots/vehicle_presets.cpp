@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <optional>
 #include <vector>
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "base/suggest.h"
 #include "robots/vehicle.h"
 
@@ -63,12 +63,6 @@ void make_pioneer(VehicleModel& m) {
   car.drive_limit = 40.0, car.brake_limit = 40.0, car.brake_share = 0.5;
   m.roll_inertia = 0.26, m.pitch_inertia = 0.36, m.spring = 2e4, m.damper = 150.0, m.travel = 0.02, m.skid = true;
   m.box = {0.313, 0.2525, 0.28}, m.turn_factor = 1.6;
-}
-
-std::optional<double> number_of(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
 /// Throws unless the wheels turn more easily than the car moves.
@@ -129,7 +123,7 @@ VehicleModel vehicle_of(const world::Mover& mover) {
     if (key == "drive") {
       model.drive_share = std::array{1.0, 0.0, 0.5}[one_of(key, value, kDrives)];
     } else if (number != kNumbers.end()) {
-      const auto said = number_of(value);
+      const auto said = base::number_of<double>(value);
       if (!said || !(*said >= number->least && *said <= number->most))
         refuse(
             fmt::format("'{}' is '{}'; expected a number from {:g} to {:g}", key, value, number->least, number->most));

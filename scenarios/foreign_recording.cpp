@@ -3,16 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "base/elementary.h"
 #include "base/error.h"
+#include "base/number_text.h"
 #include "base/time.h"
 #include "record/foreign_messages.h"
 #include "record/mcap_reader.h"
@@ -312,19 +313,14 @@ void ForeignReader::read_topic(const ForeignSensor& sensor) {
 
 /// Returns a time [ns]. @param text a number in `unit` [s], of up to 19 digits
 std::optional<std::int64_t> read_time(std::string_view text, long double unit) {
-  long double value = 0.0L;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  value *= 1e9L * unit;
+  const std::optional<long double> number = base::number_of<long double>(text);
+  const long double value = number.value_or(NAN) * (1e9L * unit);
   if (!(std::abs(value) <= kMostTime)) return std::nullopt;
   return static_cast<std::int64_t>(std::llround(value));
 }
 
 std::optional<double> read_number(std::string_view text) {
-  double value = NAN;
-  if (text.empty()) return value;  // unknown
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+  return text.empty() ? std::optional(std::nan("")) : base::number_of<double>(text);  // empty: unknown
 }
 
 void ForeignReader::read_table(const ForeignSensor& sensor) {

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
+#include "base/number_text.h"
 
 namespace sf::scenarios {
 
@@ -50,8 +51,9 @@ bool find_columns(const std::vector<std::string>& head, JobColumns& columns) {
 bool read_metric(const std::string& text, double& value) {
   value = std::numeric_limits<double>::quiet_NaN();
   if (text.empty()) return true;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
+  const std::optional<double> read = base::number_of<double>(text);
+  value = read.value_or(value);
+  return read.has_value();
 }
 
 }  // namespace

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <map>
 #include <optional>
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "scenarios/experiment.h"
 #include "scenarios/intervals.h"
 #include "scenarios/sweep_jobs.h"
@@ -23,10 +23,8 @@ constexpr std::size_t kMostPlotsOfFigure = 24;
 constexpr std::size_t kMostOverlaid = 7;  ///< maximum number of lines in an additional figure of one plot
 
 std::optional<double> number_of(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
+  const std::optional<double> value = base::number_of<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 /// A parameter and its values.

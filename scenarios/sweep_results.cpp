@@ -5,14 +5,15 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "base/hash.h"
+#include "base/number_text.h"
 #include "scenarios/experiment.h"
 
 namespace sf::scenarios {
@@ -49,8 +50,9 @@ std::string_view cut(std::string_view& text, char end) {
 
 template <class Number>
 bool read_number(std::string_view text, Number& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
+  const std::optional<Number> read = base::number_of<Number>(text);
+  value = read.value_or(value);
+  return read.has_value();
 }
 
 bool read_metric(std::string_view text, JobResult& result) {

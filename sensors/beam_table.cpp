@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/number_text.h"
 #include "sensors/lidar_beams.h"
 
 namespace sf::sensors {
@@ -68,9 +68,8 @@ class TableReader {
   double number(std::size_t column, double least, double most) const {
     if (column >= fields_.size()) fail(fmt::format("has {} fields; expected {}", fields_.size(), column + 1));
     const std::string_view text = fields_[column];
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !(value >= least && value <= most))
+    const double value = base::number_of<double>(text).value_or(NAN);
+    if (!(value >= least && value <= most))
       fail(fmt::format("'{}' in field {}; expected a number from {:g} to {:g}", text, column + 1, least, most));
     return value;
   }

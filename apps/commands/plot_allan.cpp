@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -14,6 +13,7 @@
 
 #include "apps/reports/text.h"
 #include "base/error.h"
+#include "base/number_text.h"
 #include "sensors/allan.h"
 #include "sensors/gyro.h"
 #include "sensors/imu.h"
@@ -123,11 +123,9 @@ struct TableColumn {
   std::vector<double> samples;
 };
 
-std::optional<double> number_of(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
+std::optional<double> finite_number(std::string_view text) {
+  const std::optional<double> value = base::number_of<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 /// Returns the times first, then the columns whose first field is a number.
@@ -149,10 +147,10 @@ std::vector<TableColumn> columns_of(const std::string& file) {
       continue;
     }
     for (std::size_t i = 0; first && i < headings.size(); ++i)
-      if (i != columns[0].place && number_of(record.field(i))) columns.push_back({headings[i], i, {}});
+      if (i != columns[0].place && finite_number(record.field(i))) columns.push_back({headings[i], i, {}});
     first = false;
     for (TableColumn& column : columns) {
-      const std::optional<double> value = number_of(record.field(column.place));
+      const std::optional<double> value = finite_number(record.field(column.place));
       if (!value)
         throw base::InputError(
             file, record.first_line(),

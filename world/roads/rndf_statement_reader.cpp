@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/number_text.h"
 
 namespace sf::world {
 
@@ -137,19 +138,16 @@ int StatementReader::whole(std::size_t i, int least, std::string_view what) cons
 }
 
 int StatementReader::whole(std::string_view text, int least, std::string_view what) const {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc() && end == text.data() + text.size() && value >= least && value <= kMaxRoadNumber)
-    return value;
+  const std::optional<int> value = base::number_of<int>(text);
+  if (value && *value >= least && *value <= kMaxRoadNumber) return *value;
   fail(fmt::format("{} is {}; expected a whole number from {} to {}", what, quoted(text), least, kMaxRoadNumber));
 }
 
 double StatementReader::decimal(std::size_t i, std::string_view what) const {
   std::string_view text = field(i, what);
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc() && end == text.data() + text.size() && std::isfinite(value)) return value;
+  const std::optional<double> value = base::number_of<double>(text);
+  if (value && std::isfinite(*value)) return *value;
   fail(fmt::format("{} is {}; expected a number such as -77.205045", what, quoted(text)));
 }
 
