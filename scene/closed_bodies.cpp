@@ -17,13 +17,6 @@ namespace {
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 constexpr std::size_t kPairsPerFace = 4'000;  // overlapping intervals that are tested, on average
 
-/// One edge of a face, from its smaller to its larger corner.
-struct HalfEdge {
-  std::uint32_t low, high;
-  std::uint32_t face;
-  bool forward;  ///< the face goes from `low` to `high`
-};
-
 /// A face on the other side of an edge.
 struct Neighbour {
   std::uint32_t face = kNone;
@@ -56,29 +49,17 @@ class Finder {
 };
 
 void Finder::connect() {
-  std::vector<HalfEdge> edges;
   neighbours_.resize(mesh_.faces.size()), open_.resize(mesh_.faces.size());
-  for (std::uint32_t f = 0; f < mesh_.faces.size(); ++f) {
-    const Face& face = mesh_.faces[f];
-    const std::uint32_t corners = corners_of(face);
-    for (std::uint32_t k = 0; k < corners; ++k) {
-      const std::uint32_t a = welded_[face[k]], b = welded_[face[(k + 1) % corners]];
-      edges.push_back({std::min(a, b), std::max(a, b), f, a < b});
-      if (a == b) open_[f] = 1;
-    }
-  }
-  std::ranges::sort(edges, {}, [](const HalfEdge& e) { return std::tuple(e.low, e.high); });
-  const auto link = [&](const HalfEdge& from, const HalfEdge& to) {
+  const auto link = [&](const FaceEdge& from, const FaceEdge& to) {
     for (Neighbour& slot : neighbours_[from.face])
       if (slot.face == kNone) return void(slot = {to.face, from.forward == to.forward});
   };
-  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
-    while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high) ++end;
-    if (end - i == 2 && edges[i].face != edges[i + 1].face)
-      link(edges[i], edges[i + 1]), link(edges[i + 1], edges[i]);
-    else
-      for (std::size_t k = i; k < end; ++k) open_[edges[k].face] = 1;
-  }
+  for_each_edge(edges_of(mesh_, welded_), [&](std::span<const FaceEdge> same) {
+    const bool pair = same.size() == 2 && same[0].face != same[1].face;
+    if (pair) link(same[0], same[1]), link(same[1], same[0]);
+    for (const FaceEdge& edge : same)
+      if (!pair || edge.low == edge.high) open_[edge.face] = 1;
+  });
 }
 
 /// Collects the faces that are connected to one.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -14,33 +15,12 @@ namespace {
 constexpr double kLeastTurn = 1e-6;  // sine of the angle between two edges, so that rounding leaves a face convex
 constexpr std::uint32_t kRemoved = 0xFFFFFFFFu;  // instead of a face's first corner
 
-/// An edge of a triangle.
-struct TriangleEdge {
-  std::uint32_t low, high;  ///< its ends, of equal_vertices
-  std::uint32_t face, k;    ///< from the face's corner k to the next
-};
-
 /// Two triangles with an edge in common.
 struct TrianglePair {
   double edge;  ///< [m] square of its length
   std::uint32_t first, second;
   Face joined;
 };
-
-/// Edges of all triangles, the same ones together.
-std::vector<TriangleEdge> edges_of_triangles(const Mesh& mesh) {
-  const std::vector<std::uint32_t> equal = equal_vertices(mesh);
-  std::vector<TriangleEdge> edges;
-  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
-    const Face& face = mesh.faces[f];
-    for (std::uint32_t k = 0; k < 3 && corners_of(face) == 3; ++k) {
-      const std::uint32_t a = equal[face[k]], b = equal[face[(k + 1) % 3]];
-      edges.push_back({std::min(a, b), std::max(a, b), f, k});
-    }
-  }
-  std::ranges::sort(edges, {}, [](const TriangleEdge& e) { return std::tuple(e.low, e.high, e.face); });
-  return edges;
-}
 
 /// Returns whether a face of four corners is convex and keeps the invariant of Mesh.
 bool is_flat_and_convex(const Mesh& mesh, const Face& face) {
@@ -63,20 +43,18 @@ bool alike(const std::vector<std::uint32_t>& rows, const TrianglePair& pair) {
 
 /// Pairs of triangles that may be joined, those with the longest edges first.
 std::vector<TrianglePair> flat_pairs(const Mesh& mesh) {
-  const std::vector<TriangleEdge> edges = edges_of_triangles(mesh);
   std::vector<TrianglePair> pairs;
-  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
-    while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high) ++end;
-    if (end - i != 2) continue;
-    const TriangleEdge &e = edges[i], &other = edges[i + 1];
-    const Face& face = mesh.faces[e.face];
+  for_each_edge(edges_of(mesh, equal_vertices(mesh)), [&](std::span<const FaceEdge> same) {
+    if (same.size() != 2) return;
+    const FaceEdge &e = same[0], &other = same[1];
+    const Face &face = mesh.faces[e.face], &beside = mesh.faces[other.face];
+    if (corners_of(face) != 3 || corners_of(beside) != 3) return;
     const std::uint32_t a = face[e.k], b = face[(e.k + 1) % 3], c = face[(e.k + 2) % 3];
-    const std::uint32_t opposite = mesh.faces[other.face][(other.k + 2) % 3];
     const glm::dvec3 along = mesh.vertices[b] - mesh.vertices[a];
-    const TrianglePair pair{glm::dot(along, along), e.face, other.face, {a, opposite, b, c}};
+    const TrianglePair pair{glm::dot(along, along), e.face, other.face, {a, beside[(other.k + 2) % 3], b, c}};
     if (alike(mesh.owners, pair) && alike(mesh.materials, pair) && is_flat_and_convex(mesh, pair.joined))
       pairs.push_back(pair);
-  }
+  });
   std::ranges::sort(pairs, {}, [](const TrianglePair& p) { return std::tuple(-p.edge, p.first, p.second); });
   return pairs;
 }

@@ -34,4 +34,18 @@ std::vector<std::uint32_t> equal_vertices(const Mesh& mesh) {
   return equal;
 }
 
+std::vector<FaceEdge> edges_of(const Mesh& mesh, std::span<const std::uint32_t> equal) {
+  std::vector<FaceEdge> edges;
+  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+    const Face& face = mesh.faces[f];
+    const std::uint32_t corners = corners_of(face);
+    for (std::uint32_t k = 0; k < corners; ++k) {
+      const std::uint32_t a = equal[face[k]], b = equal[face[(k + 1) % corners]];
+      edges.push_back({std::min(a, b), std::max(a, b), f, k, a < b});
+    }
+  }
+  std::ranges::sort(edges, {}, [](const FaceEdge& e) { return std::tuple(e.low, e.high, e.face, e.k); });
+  return edges;
+}
+
 }  // namespace sf::scene

@@ -41,4 +41,22 @@ Plane plane_of(const Mesh& mesh, const Face& face);
 /// Returns for each vertex the row of one vertex with its coordinates, which are compared exactly.
 std::vector<std::uint32_t> equal_vertices(const Mesh& mesh);
 
+/// An edge of a face.
+struct FaceEdge {
+  std::uint32_t low, high;  ///< its ends, of equal_vertices; equal if it has no length
+  std::uint32_t face, k;    ///< from the face's corner k to the next
+  bool forward;             ///< from `low` to `high`
+};
+/// Returns the edges of all faces by their ends, then by face, so that those of neighbours are next to each other.
+/// @param equal of equal_vertices
+std::vector<FaceEdge> edges_of(const Mesh& mesh, std::span<const std::uint32_t> equal);
+/// Calls `visit(edges)` for each pair of ends in the result of edges_of.
+template <class Visit>
+void for_each_edge(std::span<const FaceEdge> edges, const Visit& visit) {
+  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
+    while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high) ++end;
+    visit(edges.subspan(i, end - i));
+  }
+}
+
 }  // namespace sf::scene
