@@ -33,20 +33,6 @@ Cruise::Cruise(const world::RoadLane& lane, bool closed, CruiseSettings settings
   points_.push_back(points_.front());
 }
 
-Cruise::Place Cruise::place_of(glm::dvec2 p) const {
-  Place best;
-  double nearest = HUGE_VAL;
-  for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
-    const glm::dvec2 e = points_[i + 1] - points_[i], d = p - points_[i];
-    const double t = std::clamp(glm::dot(d, e) / glm::dot(e, e), 0.0, 1.0);
-    const double away = glm::length(d - t * e);
-    if (!(away < nearest)) continue;
-    nearest = away;
-    best = {s_[i] + t * (s_[i + 1] - s_[i]), base::cross(e, d) / glm::length(e), base::atan2(e.y, e.x)};
-  }
-  return best;
-}
-
 double Cruise::curvature_at(double s) const {
   const auto yaw_at = [&](double at) {
     at = closed_ ? at - s_.back() * std::floor(at / s_.back()) : std::clamp(at, 0.0, s_.back());
@@ -63,13 +49,13 @@ double Cruise::ahead(double s, double of) const {
   return closed_ && d < 0.0 ? d + s_.back() : d;
 }
 
-double Cruise::speed_behind(const ControllerInput& input, const Place& here) const {
+double Cruise::speed_behind(const ControllerInput& input, const world::CurvePlace& here) const {
   double least = settings_.speed;
   for (const Neighbour& other : input.others) {
     const base::Pose& X = other.state.X_WM;
-    const Place there = place_of({X.x, X.y});
+    const world::CurvePlace there = world::place_beside(points_, s_, {X.x, X.y});
     const double distance = ahead(here.s, there.s);
-    if (std::abs(there.offset) > half_width_ || !(distance > 0.0 && distance < settings_.range)) continue;
+    if (std::abs(there.left) > half_width_ || !(distance > 0.0 && distance < settings_.range)) continue;
     const double speed = other.state.velocity.forward * base::cos(X.yaw - there.yaw);
     const double free = distance - settings_.gap - settings_.headway * input.state.velocity.forward;
     least = std::min(least, std::max(speed + kApproach * free, 0.0));
@@ -80,8 +66,8 @@ double Cruise::speed_behind(const ControllerInput& input, const Place& here) con
 base::Twist Cruise::step(const ControllerInput& input) {
   if (!input.started) return {};
   const base::Pose& X = input.state.X_WM;
-  const Place here = place_of({X.x, X.y});
-  offset_ = here.offset;
+  const world::CurvePlace here = world::place_beside(points_, s_, {X.x, X.y});
+  offset_ = here.left;
   const double reach = std::max(settings_.preview * input.state.velocity.forward, 3.0);
   const double bend = std::max(std::abs(curvature_at(here.s)), std::abs(curvature_at(here.s + 2.0 * reach)));
   double speed = speed_behind(input, here);
@@ -91,7 +77,7 @@ base::Twist Cruise::step(const ControllerInput& input) {
   if (done_) return {};
   // The car's steering lags, so the curvature is that of the place a moment later.
   const double curvature = curvature_at(here.s + 0.2 * input.state.velocity.forward);
-  return steer(speed, here.offset, base::wrap_angle(X.yaw - here.yaw), curvature, reach, kFastTurn, kFullTurn);
+  return steer(speed, here.left, base::wrap_angle(X.yaw - here.yaw), curvature, reach, kFastTurn, kFullTurn);
 }
 
 namespace {

@@ -6,6 +6,7 @@
 
 #include "control/controllers.h"
 #include "control/stop_reason.h"
+#include "world/roads/curve.h"
 
 namespace sf::control {
 
@@ -31,14 +32,9 @@ class Cruise final : public Controller, public StatesStopReason {
   std::uint64_t needs() const override { return 0; }
 
  private:
-  struct Place {
-    double s = 0.0, offset = 0.0;  ///< [m] along the line, to its left
-    double yaw = 0.0;              ///< [rad] of the line
-  };
-  Place place_of(glm::dvec2 p) const;
   double curvature_at(double s) const;
   double ahead(double s, double of) const;
-  double speed_behind(const ControllerInput& input, const Place& here) const;
+  double speed_behind(const ControllerInput& input, const world::CurvePlace& here) const;
 
   std::vector<glm::dvec2> points_;  ///< the first one again at the end of a closed lane
   std::vector<double> s_;           ///< [m] along the lane, per point

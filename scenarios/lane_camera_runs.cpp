@@ -70,24 +70,11 @@ void change_camera(world::Sensor& camera, std::string_view keys) {
   }
 }
 
-/// A place along a curve.
-struct LanePlace {
-  double s, left, yaw;  // [m], [m], [rad]
-};
-
-LanePlace place_on(const world::Curve& curve, glm::dvec2 p) {
-  LanePlace best{};
-  double least = HUGE_VAL;
-  for (std::size_t i = 0; i + 1 < curve.points.size(); ++i) {
-    const glm::dvec2 a = curve.points[i], along = curve.points[i + 1] - a, from = p - a;
-    const double t = std::clamp(glm::dot(from, along) / glm::dot(along, along), 0.0, 1.0);
-    const glm::dvec2 to = from - t * along;
-    const double far = glm::length(to), side = along.x * to.y - along.y * to.x;
-    if (far >= least) continue;
-    least = far;
-    best = {curve.s[i] + t * glm::length(along), std::copysign(far, side), base::atan2(along.y, along.x)};
-  }
-  return best;
+/// The place beside the course, with its distance on the left.
+world::CurvePlace place_on(const world::Curve& curve, glm::dvec2 p) {
+  world::CurvePlace place = world::place_beside(curve.points, curve.s, p);
+  place.left = std::copysign(place.away, place.left);
+  return place;
 }
 
 void drive_by(const LaneVariant& variant, control::ControllerConfig& controller) {
@@ -140,7 +127,7 @@ base::Pose pose_on(const LaneCourse& course, double s) {
 }
 
 double lane_error(const LaneCourse& course, const base::Pose& X_WM, double ahead) {
-  const LanePlace at = place_on(course.middle, base::transform(X_WM, glm::dvec2{ahead, 0.0}));
+  const world::CurvePlace at = place_on(course.middle, base::transform(X_WM, glm::dvec2{ahead, 0.0}));
   return -at.left / base::cos(base::wrap_angle(X_WM.yaw - at.yaw));
 }
 
@@ -175,7 +162,7 @@ LaneRun run_lane(const Scenario& scenario, const LaneVariant& variant, gpu::Devi
     run.seconds = 1e-9 * static_cast<double>(tick.time);
     if (!simulation.stepped(probe)) continue;
     const base::Pose& X_WM = tick.reports[probe].X_WM;
-    const LanePlace at = place_on(course.middle, {X_WM.x, X_WM.y});
+    const world::CurvePlace at = place_on(course.middle, {X_WM.x, X_WM.y});
     run.s.push_back(at.s), run.offsets.push_back(at.left);
     run.headings.push_back(base::wrap_angle(X_WM.yaw - at.yaw));
     run.errors.push_back(simulation.status(probe).error - lane_error(course, X_WM));

@@ -172,4 +172,16 @@ glm::dvec2 point_at(const Curve& curve, double s) {
   return curve.points[i - 1] + t * (curve.points[i] - curve.points[i - 1]);
 }
 
+CurvePlace place_beside(std::span<const glm::dvec2> points, std::span<const double> s, glm::dvec2 p) {
+  CurvePlace best{.away = HUGE_VAL};
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const glm::dvec2 e = points[i + 1] - points[i], d = p - points[i];
+    const double t = std::clamp(glm::dot(d, e) / glm::dot(e, e), 0.0, 1.0);
+    const double away = glm::length(d - t * e);
+    if (away < best.away)
+      best = {s[i] + t * (s[i + 1] - s[i]), base::cross(e, d) / glm::length(e), away, base::atan2(e.y, e.x)};
+  }
+  return best;
+}
+
 }  // namespace sf::world

@@ -50,4 +50,14 @@ std::vector<glm::dvec2> offset_curve(const Curve& curve, double distance);
 /// Returns the point at `s` [m] along the polyline, clamped to its ends.
 glm::dvec2 point_at(const Curve& curve, double s);
 
+/// A place beside a curve.
+struct CurvePlace {
+  double s = 0.0;     ///< [m] along the polyline, of the nearest point
+  double left = 0.0;  ///< [m] from the line through the nearest piece, positive to its left
+  double away = 0.0;  ///< [m] from the nearest point
+  double yaw = 0.0;   ///< [rad] of that piece
+};
+/// Finds the nearest place of the polyline with at least two points, of which successive ones differ.
+CurvePlace place_beside(std::span<const glm::dvec2> points, std::span<const double> s, glm::dvec2 p);
+
 }  // namespace sf::world
