@@ -1,5 +1,5 @@
 #pragma once
-// What robots intend, for the live view over images of cameras: `sensorfarm_msgs/msg/Intents`.
+// Intents of robots for the live view over camera images: `sensorfarm_msgs/msg/Intents`.
 
 #include <glm/ext/vector_double2.hpp>
 #include <map>

@@ -1,5 +1,5 @@
 #pragma once
-// A camera's image as painted points on the ground around its robot: what `lane-camera` sees.
+// Finds painted points on the ground around a robot in its camera's image: the input of `lane-camera`.
 
 #include <memory>
 #include <span>

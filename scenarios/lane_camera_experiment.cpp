@@ -115,8 +115,8 @@ constexpr std::string_view kLaneCameraReasons =
     "mean of both pieces. Wide lenses, distorted or not, show more of the lane near the car and are better. Between "
     "images the lane moves with the commands, so one image per second is enough. With 30 % of noise the image is full "
     "of lines, and the car takes a wrong lane. At 0.5 m/s the gain is at its limit, and the distance from the middle "
-    "is "
-    "that of the law. In crossings, 1.2 m without paint, the car drives by its commands until it sees the next lane.";
+    "is that of the law. In crossings, 1.2 m without paint, the car drives by its commands until it sees the next "
+    "lane.";
 
 }  // namespace
 

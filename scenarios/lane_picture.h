@@ -1,5 +1,5 @@
 #pragma once
-// What a camera that keeps its lane sees: its image with the lane, and the ground as `lane-camera` rectifies it.
+// A picture of `lane-camera` at work: the camera's image with the lane drawn over it, beside the rectified ground.
 
 #include <string>
 

@@ -65,7 +65,7 @@ struct SceneView {
   Terrain terrain{};   ///< a beam that meets it hits base::kFloorHit
 };
 
-/// What the beams of a tile meet, in the tile's order.
+/// The hits of a tile's beams, in the tile's order.
 struct TileSurfaces {
   alignas(64) double ranges[kTileBeams];                              ///< [m] as ScanOutput::ranges
   alignas(64) float x[kTileBeams], y[kTileBeams], z[kTileBeams];      ///< as ScanOutput::normals
@@ -73,7 +73,7 @@ struct TileSurfaces {
   std::uint32_t uniform = 0;  ///< bit mask of vectors whose beams all meet one face, or all nothing
 };
 
-/// Receives what the beams of each tile meet, as soon as the tile has been cast.
+/// Receives the hits of each tile as soon as the tile has been cast.
 class TileSink {
  public:
   virtual ~TileSink() = default;

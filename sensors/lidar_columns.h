@@ -2,8 +2,8 @@
 // The nearest echo above the ground in each column of a lidar, as a planar scan, for features (docs/derived.md#types).
 //
 // In each column, from the lowest beam on, an echo is on the ground if the way to it from the last such echo rises by
-// at most kGroundStep and kGroundSlope; the first one is below the robot. Others are obstacles if they are at most
-// kTallest above the ground there, so that what is overhead is none. It uses nothing but the ranges and the mount.
+// at most kGroundStep and kGroundSlope; the first one is below the robot. Other echoes are obstacles if they are at
+// most kTallest above the ground there; higher ones are overhead. Inputs are the ranges and the mount alone.
 
 #include <span>
 #include <vector>

@@ -4,8 +4,8 @@
 // In a world file, inside a robot:
 //   radar( targets 32  range [0.2 100]  fov 90  columns 181  noise [0.1 0.3 0.03]  detection_range 80 )
 // A fan of beams samples the scene of spatial scans: walls, movers, meshes, terrain. A target is a mover that a beam
-// meets before anything else; its point is where the shortest of these beams meets it. A reading has `targets` rows,
-// the nearest target first; the rest are NaN.
+// meets before anything else; its point is the nearest hit of these beams. A reading has `targets` rows, the nearest
+// target first; the rest are NaN.
 
 #include <array>
 #include <cstdint>

@@ -58,7 +58,7 @@ class SpatialScans : public HostBackend {
   const std::vector<world::Material>& materials() const { return scene_.materials(); }
   /// Precedes calls of `follow` for tiles that are cast from one pose. Several threads call both at once.
   virtual void begin_follow(std::size_t /*sample*/, const base::RigidTransform& /*X_WS*/, unsigned /*thread*/) {}
-  /// Computes further quantities of what the beams of a tile met.
+  /// Computes further quantities from the hits of a tile.
   virtual void follow(std::size_t /*sample*/, const base::RigidTransform& /*X_WS*/, const scene::BeamTile& /*tile*/,
                       const scene::TileSurfaces& /*surfaces*/, unsigned /*thread*/) {}
 

@@ -139,7 +139,7 @@ bool LaneTracker::search(std::span<const glm::dvec2> points) {
 
 namespace {
 
-/// What the points of an image say of a lane near an estimate.
+/// The normal equations of a lane near an estimate, from the points of an image.
 struct LaneEvidence {
   glm::dmat4 information{0.0};
   glm::dvec4 pull{};             ///< information times the difference from the estimate

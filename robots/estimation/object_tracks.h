@@ -34,8 +34,8 @@ struct RadialSpeed {
 
 /// One observation of an object, in the world frame.
 struct Observation {
-  glm::dvec2 p;                            ///< [m] what is seen: a surface, or a tag
-  glm::dvec2 to_middle;                    ///< [m] from there to the middle of the object, as far as it is known
+  glm::dvec2 p;                            ///< [m] the point observed: on a surface, or a tag
+  glm::dvec2 to_middle;                    ///< [m] from there to the middle of the object, if known
   Spread own{};                            ///< of the sensor's error
   Spread repeated{};                       ///< of the errors that repeat
   bool corner = false;                     ///< corners are tracked apart from other objects

@@ -26,7 +26,7 @@ constexpr std::uint32_t kObjectBeams = 3;           // between two echoes of an 
 
 double square_of(double value) { return value * value; }
 
-/// What is seen of an object along one of its axes.
+/// The visible extent of an object along one of its axes.
 struct Side {
   glm::dvec2 along;
   double low = HUGE_VAL, high = -HUGE_VAL;  ///< [m]
@@ -213,7 +213,7 @@ bool ScanFeatures::add_object(std::size_t first, std::size_t last) {
   }
   if (best[0].width() < best[1].width()) std::swap(best[0], best[1]);
   if (best[0].width() < kLeastWidth * options_.size.y) return false;
-  // What is wider than an object is its length; else its width is the side that has this size.
+  // An extent above the object's width is along its length; otherwise the extent that fits the width better is across.
   const auto misfit = [&](const Side& side) { return std::abs(side.width() - options_.size.y); };
   if (best[0].width() <= options_.size.y + kObjectRoom && misfit(best[0]) <= misfit(best[1]))
     std::swap(best[0], best[1]);
