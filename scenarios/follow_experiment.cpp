@@ -51,8 +51,7 @@ std::string follow_report(const ExperimentContext& context, std::span<const Foll
       "and times of the tag that are not those of all cameras, bit by bit; `missed` counts moments in which all "
       "cameras found it and this method did not.\n\n"
       "| case | method | processor time | of all cameras | pixels | asleep | seen | error RMS (largest) | longest gap "
-      "| "
-      "hand-overs | missed | different |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+      "| hand-overs | missed | different |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
       context.type.summary, kFollowTags, context.options.seed);
   for (std::size_t c = 0; c < runs.size(); ++c) {
     const double all = summarize(runs[c], FollowMethod::all).cpu_ms;

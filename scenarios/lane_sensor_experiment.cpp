@@ -181,8 +181,7 @@ std::vector<std::string> run_lane_sensor(const ExperimentContext& context) {
 
 constexpr std::string_view kLaneSensorReasons =
     "The lane edge sensor is the reference. Readings are not valid where there are no magnets (the bridge, East "
-    "Street, "
-    "crossings), which the training range recognizes.";
+    "Street, crossings), which the training range recognizes.";
 
 }  // namespace
 

@@ -146,8 +146,7 @@ std::vector<std::string> run_links(const ExperimentContext& context) {
   write_text(next("results.csv"), links_csv(places));
   std::string report = fmt::format(
       "# Speeds of links from probes and loops\n\nSeeds {} to {}. The filters' constants were set before the first run "
-      "and "
-      "not tuned.\n\n",
+      "and not tuned.\n\n",
       context.options.seed, context.options.seed + kLinkSeeds - 1);
   for (const TrafficPlace& place : places) report += place_table(place);
   write_text(next("report.md"), report + std::string(context.type.reasons) + "\n");
@@ -158,8 +157,7 @@ std::vector<std::string> run_links(const ExperimentContext& context) {
 
 constexpr std::string_view kLinksReasons =
     "The target is 7 km/h at full size. SimVille has 1/7 of all lengths and unscaled time, so speeds are 1/7: 0.278 "
-    "m/s. "
-    "Its cars drive at most 0.5 m/s (13 km/h), so the target is not demanding there; the error in percent is.";
+    "m/s. Its cars drive at most 0.5 m/s (13 km/h), so the target is not demanding there; the error in percent is.";
 
 }  // namespace
 

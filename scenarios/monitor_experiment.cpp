@@ -127,8 +127,7 @@ std::string monitor_report(const ExperimentContext& context, const FalseAlarms& 
       reported.faulty_nees.mean(), reported.faulty_nees.count);
   text +=
       "| sensor | fault | size | cars | detected | median delay [s] | 95 % [s] | isolated | correctly | lane RMS "
-      "without "
-      "[m] | with | position RMS without [m] | with |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "without [m] | with | position RMS without [m] | with |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (std::size_t row = 0; row < monitor_cases().size(); ++row) text += fault_row(row, pairs);
   return text + "\n" + std::string(context.type.reasons) + "\n";
 }

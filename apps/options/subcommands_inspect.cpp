@@ -119,8 +119,7 @@ void add_sense(CLI::App& app, Call& call) {
                o.image = std::ranges::find(kinds, word, &std::pair<std::string, ImageKind>::first)->second;
              },
              "Write this image of a camera: depth (16 bits, mm), labels (16 bits: 0 nothing, 1 floor, 2 + row of the "
-             "model), "
-             "normals or colour (8 bits)")
+             "model), normals or colour (8 bits)")
           ->check(CLI::IsMember({"depth", "labels", "normals", "colour"}))
           ->type_name("KIND")
           ->needs(out);

@@ -71,8 +71,7 @@ void add_experiment(CLI::App& app, Call& call) {
   add_choice<std::optional<Plant>, Plant>(
       *sub, "--plant", o.plant, {{"thesis", Plant::thesis}, {"ideal", Plant::ideal}},
       "Actuator model of the robots: ideal (commands are executed unchanged) or thesis (Player's driver for the "
-      "Create). "
-      "Default: thesis for paths, sweeps and mapping; ideal for towns and Pioneers");
+      "Create). Default: thesis for paths, sweeps and mapping; ideal for towns and Pioneers");
   add_compression(*sub, o);
   sub->add_option("--files", o.experiments, "Folder of the experiments' scenario files (default: sensorfarm's own)")
       ->check(not_empty("a folder"))
