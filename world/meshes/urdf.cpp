@@ -111,6 +111,7 @@ class RobotReader {
 
   std::string file_;
   TriangleBuilder builder_;
+  std::uint64_t triangles_ = 0;  ///< in it
   std::map<std::string, Triangles> meshes_;
 };
 
@@ -144,11 +145,16 @@ Triangles RobotReader::part_of(const UrdfShape& shape) {
 /// Adds all shapes of a link, or none. @param reason out: why none was added
 bool RobotReader::add(const std::vector<UrdfShape>& shapes, std::string& reason) {
   std::vector<Triangles> parts;
+  std::uint64_t triangles = triangles_;
   try {
-    for (const UrdfShape& shape : shapes) parts.push_back(part_of(shape));
+    for (std::size_t i = 0; i < shapes.size() && triangles <= kMostTriangles; ++i) {
+      parts.push_back(part_of(shapes[i]));
+      triangles += parts.back().corners.size() / 3;
+    }
   } catch (const base::InputError& error) {
     return reason = error.what(), false;
   }
+  builder_.expect(triangles_ = triangles);
   for (const Triangles& part : parts) builder_.add(part);
   return !parts.empty();
 }
