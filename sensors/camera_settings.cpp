@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "base/elementary.h"
+#include "sensors/pixel_samples.h"
 #include "sensors/settings.h"
 
 namespace sf::sensors {
@@ -150,20 +150,15 @@ std::vector<double> times_of(const CameraSettings& s, LidarBeams& beams) {
 /// Unit vector in the sensor's frame. @param n normalised coordinates
 glm::dvec3 beam_of(glm::dvec2 n) { return glm::normalize(glm::dvec3{1.0, -n.x, -n.y}); }
 
-/// Position of a sample in its pixel [px from the middle]: the first is its middle, the others fill it evenly (M.
-/// Roberts' R2 sequence).
-glm::dvec2 place_of(std::uint32_t sample) {
-  const glm::dvec2 at = 0.5 + static_cast<double>(sample) * glm::dvec2(0.7548776662466927, 0.5698402909980532);
-  return at - glm::floor(at) - 0.5;
-}
-
 void add_parts(const base::LensImage& lens, const CameraSettings& s, LidarBeams& beams) {
   const std::size_t count = beams.cast.empty() ? beams.directions.size() : beams.cast.size();
+  const PixelSamples samples(s.samples);
   for (std::size_t c = 0; c < count; ++c) {
     const std::uint32_t i = beams.cast.empty() ? static_cast<std::uint32_t>(c) : beams.cast[c];
     beams.part_directions.push_back(beams.directions[i]);
+    const std::uint32_t u = i % s.width, v = i / s.width;
     for (std::uint32_t k = 1; k < s.samples; ++k) {
-      const auto n = lens.direction(glm::dvec2(i % s.width, i / s.width) + place_of(k));
+      const auto n = lens.direction(glm::dvec2(u, v) + samples.at(k, u, v));
       beams.part_directions.push_back(n ? beam_of(*n) : beams.directions[i]);
     }
   }

@@ -65,18 +65,22 @@ std::vector<glm::dvec3> chosen(const std::vector<glm::dvec3>& all, const std::ve
   return some;
 }
 
-/// Divides each beam's cone: a spiral of parts with equal solid angles (Vogel 1979).
+/// Divides each beam's cone into parts with equal solid angles: pairs opposite each other, on a spiral like Vogel's
+/// (1979), and in the middle the first of an odd number. Their mean is the beam.
 std::vector<glm::dvec3> parts_of(const LidarBeams& beams, double divergence) {
-  constexpr double kGoldenAngle = 2.399963229728653;
+  constexpr double kTurn = 0.5 * 2.399963229728653;  // half of the golden angle: pairs repeat after half a turn
+  const std::uint32_t single = beams.parts % 2;
   std::vector<glm::dvec3> parts;
   for (const glm::dvec3& d : chosen(beams.directions, beams.cast)) {
     const glm::dvec3 aside =
         glm::normalize(glm::cross(std::abs(d.z) < 0.9 ? glm::dvec3{0, 0, 1} : glm::dvec3{1, 0, 0}, d));
     const glm::dvec3 up = glm::cross(d, aside);
-    for (std::uint32_t k = 0; k < beams.parts; ++k) {
-      const double radius = base::tan(0.5 * divergence) * std::sqrt((k + 0.5) / beams.parts);
-      const auto [s, c] = base::sin_cos(kGoldenAngle * k);
-      parts.push_back(glm::normalize(d + radius * (c * aside + s * up)));
+    if (single != 0) parts.push_back(d);
+    for (std::uint32_t pair = 0; pair < beams.parts / 2; ++pair) {
+      const double radius = base::tan(0.5 * divergence) * std::sqrt((single + 2.0 * pair + 1.0) / beams.parts);
+      const auto [s, c] = base::sin_cos(kTurn * pair);
+      const glm::dvec3 off = radius * (c * aside + s * up);
+      parts.push_back(glm::normalize(d + off)), parts.push_back(glm::normalize(d - off));
     }
   }
   return parts;
