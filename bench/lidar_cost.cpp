@@ -161,6 +161,7 @@ class SkipCaster : public SpatialCaster {
       beams_.cast.push_back(i);
       beams_.part_directions.push_back(beams[i]);
     }
+    beams_.between = sensors::interpolation_weights(beams_);
     const auto rings = static_cast<std::uint32_t>(beams.size() / row);
     cast_ = make(beams_.part_directions, static_cast<std::uint32_t>(beams_.cast.size()) / rings);
     part_.resize(beams_.cast.size());

@@ -141,10 +141,11 @@ void compare(const Read& read, const Read& exact, ModeResult& grade) {
 void find_front(std::vector<ModeResult>& results, std::size_t first) {
   for (std::size_t i = first; i < results.size(); ++i) {
     const auto better = [&](const ModeResult& other) {
-      return other.rate >= results[i].rate && other.p99 <= results[i].p99 &&
+      return !is_pointless(other, results[first]) && other.rate >= results[i].rate && other.p99 <= results[i].p99 &&
              (other.rate > results[i].rate || other.p99 < results[i].p99);
     };
-    results[i].front = std::none_of(results.begin() + static_cast<std::ptrdiff_t>(first), results.end(), better);
+    results[i].front = !is_pointless(results[i], results[first]) &&
+                       std::none_of(results.begin() + static_cast<std::ptrdiff_t>(first), results.end(), better);
   }
 }
 

@@ -32,6 +32,12 @@ struct ModeResult {
   bool front = false;  ///< Pareto-optimal: no other mode is both faster and more accurate (99th percentile)
 };
 
+/// Returns whether a mode changed no reading and only lost bounds, such as simplified meshes in a world without any. It
+/// is never worth using.
+inline bool is_pointless(const ModeResult& mode, const ModeResult& exact) {
+  return mode.max <= exact.max && mode.covered < exact.covered;
+}
+
 struct TradeoffOptions {
   std::uint64_t seed = 1;
   unsigned threads = 0;

@@ -33,7 +33,9 @@ std::size_t fastest_within(const std::vector<ModeResult>& results, const std::ve
   std::size_t best = rows.front();
   for (const std::size_t row : rows) {
     const ModeResult& grade = results[row];
-    if (judged(grade, target.by) <= allowed(grade, target) && grade.rate > results[best].rate) best = row;
+    if (judged(grade, target.by) <= allowed(grade, target) && grade.rate > results[best].rate &&
+        !is_pointless(grade, results[rows.front()]))
+      best = row;
   }
   return best;
 }
@@ -63,6 +65,7 @@ std::vector<std::size_t> most_accurate(const std::vector<ModeResult>& results,
     std::vector<Choice> longer;
     for (const Choice& choice : choices)
       for (const std::size_t row : rows) {
+        if (is_pointless(results[row], results[rows.front()])) continue;
         Choice& next = longer.emplace_back(choice);
         next.rows.push_back(row);
         next.tick += results[row].tick;

@@ -47,8 +47,8 @@ double range_error(const LidarSettings& s) {
 
 /// True if a lidar reports what its beams meet.
 bool is_plain(const LidarSettings& s) {
-  return s.beams->parts == 1 && s.beams->cast.empty() && s.echo.width == 1 && s.echo.detection_range == 0.0 &&
-         s.echo.slope == 0.0 && s.echo.dropout == 0.0;
+  return s.beams->parts == 1 && s.echo.width == 1 && s.echo.detection_range == 0.0 && s.echo.slope == 0.0 &&
+         s.echo.dropout == 0.0;
 }
 
 std::vector<SpatialScanner> scanners_of(const std::vector<LidarSettings>& lidars) {
@@ -73,7 +73,13 @@ Lidars::Lidars(const SensorContext& context, const ParsedSensors& sensors)
       reflectances_(context.world, materials()),
       finders_(context.thread_pool.threads()) {}
 
-void Lidars::finish(std::size_t i, unsigned thread) { scanner_of(i).plain ? add_noise(i) : find_echoes(i, thread); }
+void Lidars::finish(std::size_t i, unsigned thread) {
+  scanner_of(i).plain ? add_noise(i) : find_echoes(i, thread);
+  const HostSample& sample = samples()[i];
+  const LidarSettings& s = settings_[sample.row];
+  if (!s.beams->cast.empty())
+    interpolate_columns(*s.beams, s.echo.range_max, {sample.values, s.echo.width, hits_of(i), quality_of(i)});
+}
 
 /// Adds noise to hits, and flags surfaces nearer than the smallest range.
 void Lidars::add_noise(std::size_t i) {
@@ -85,7 +91,10 @@ void Lidars::add_noise(std::size_t i) {
   const base::RandomKey key = episodes().key(base::RandomStream::spatial_range, row.mover, row.sensor, sample.sequence);
   const auto hits = hits_of(i);
   const auto quality = quality_of(i);
-  for (std::size_t k = 0; k < sample.values.size(); ++k) {
+  const std::vector<std::uint32_t>& cast = settings_[sample.row].beams->cast;
+  const std::size_t count = cast.empty() ? sample.values.size() : cast.size();
+  for (std::size_t c = 0; c < count; ++c) {
+    const std::size_t k = cast.empty() ? c : cast[c];
     double& range = sample.values[k];
     if (hits[k] == base::kNoHit) continue;
     if (range < s.range_min) quality[k] = base::QualityFlag::too_near;
@@ -115,7 +124,7 @@ void Lidars::find_echoes(std::size_t i, unsigned thread) {
   const std::vector<std::uint32_t>& cast = s.beams->cast;
   for (std::uint32_t c = 0; c < s.beams->cast_directions().size() / parts; ++c) {
     const std::uint32_t k = cast.empty() ? c : cast[c];
-    const std::size_t at = c * parts;
+    const std::size_t at = s.beams->in_place ? k : c * parts;
     BeamParts beam{from.ranges.subspan(at, parts), from.cosines.subspan(at, parts), from.hits.subspan(at, parts),
                    from.quality.subspan(at, parts)};
     if (!from.materials.empty()) beam.materials = from.materials.subspan(at, parts);
@@ -133,7 +142,6 @@ void Lidars::find_echoes(std::size_t i, unsigned thread) {
     hits[k] = echoes[0] ? echoes[0]->hit : base::kNoHit;
     quality[k] = echoes[0] ? echoes[0]->quality : base::QualityFlag::none;
   }
-  if (!cast.empty()) interpolate_columns(*s.beams, s.echo.range_max, {sample.values, s.echo.width, hits, quality});
 }
 
 void Lidars::collect(std::span<base::ReadingBlock> out) {

@@ -29,14 +29,18 @@ struct LidarBeams {
   std::uint32_t channels = 1;          ///< rings; beams per ring: directions.size() / channels
   std::uint32_t parts = 1;             ///< per beam
   std::vector<std::uint32_t> cast;     ///< beams that are cast, ascending; empty: all
+  std::vector<glm::dvec2> between;     ///< of the other beams: weights, as interpolation_weights (lidar_modes.h)
   std::vector<glm::dvec3> part_directions;  ///< of all parts of the cast beams, beam by beam; empty: `directions`
-  scene::BeamPattern pattern;               ///< of the parts
+  scene::BeamPattern pattern;               ///< of the parts, which have their places in all, or
+  bool in_place = false;                    ///< those of their beams
 
   /// [ns] from the first beam of a rolling scan to its reading; 0: all are cast at once.
   std::int64_t duration() const;
   const std::vector<glm::dvec3>& cast_directions() const {
     return part_directions.empty() ? directions : part_directions;
   }
+  /// Directions by the pattern's places.
+  const std::vector<glm::dvec3>& placed_directions() const { return in_place ? directions : cast_directions(); }
 };
 
 /// Settings of one lidar.

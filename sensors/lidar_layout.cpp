@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/elementary.h"
+#include "sensors/lidar_modes.h"
 
 namespace sf::sensors {
 
@@ -128,6 +129,14 @@ LidarBeams beams_of(const LidarLayout& layout) {
   const bool rings = layout.has_rings() && beams.parts == 1;
   beams.pattern = scene::make_pattern(beams.cast_directions(),
                                       rings ? static_cast<std::uint32_t>(cast / beams.channels) : 0, part_times);
+  if (beams.cast.empty()) return beams;
+  beams.between = interpolation_weights(beams);
+  if (beams.parts > 1) return beams;
+  beams.in_place = true;
+  for (scene::BeamTile& tile : beams.pattern) {
+    for (std::uint32_t& place : tile.place) place = beams.cast[place];
+    tile.consecutive = false;
+  }
   return beams;
 }
 

@@ -50,7 +50,7 @@ SpatialScans::SpatialScans(const SensorContext& context, const SensorType& type,
   bool normals = false;
   for (const SpatialScanner& s : scanners_) {
     first_beam_.push_back(first_beam_.back() + s.beams->directions.size());
-    first_part_.push_back(first_part_.back() + (s.plain ? 0 : s.beams->cast_directions().size()));
+    first_part_.push_back(first_part_.back() + (s.plain ? 0 : s.beams->placed_directions().size()));
     normals = normals || s.normals;
   }
   hits_.resize(first_beam_.back()), quality_.resize(first_beam_.back());
@@ -200,7 +200,7 @@ void SpatialScans::cast_reference(const base::RigidTransform& X_WS, const scene:
   scene::TileSurfaces surfaces;
   for (std::uint32_t k = 0; k < tile.used * scene::kWidth; ++k) {
     const std::uint32_t i = tile.place[k];
-    const auto hit = scene::reference_scan(X_WS, s.beams->cast_directions()[i], s.range_max, view);
+    const auto hit = scene::reference_scan(X_WS, s.beams->placed_directions()[i], s.range_max, view);
     out.ranges[i] = surfaces.ranges[k] = static_cast<double>(hit.range);
     out.hits[i] = surfaces.hits[k] = hit.owner;
     surfaces.x[k] = hit.normal.x, surfaces.y[k] = hit.normal.y, surfaces.z[k] = hit.normal.z;

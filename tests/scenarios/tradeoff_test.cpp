@@ -96,6 +96,15 @@ TEST(Advice, SelectsTheFastestWithinTheErrors) {
   EXPECT_EQ(advised({.metres = 1e-3, .tesla = 1e-12}), "laser:single") << "the limit is inclusive";
 }
 
+/// Simplified meshes in a world without any: equal readings without a bound, and ticks that differ by chance.
+TEST(Advice, IgnoresModesThatOnlyLoseTheBound) {
+  const std::vector<ModeResult> results{
+      {.sensor = "lidar", .mode = "exact", .unit = "m", .rate = 10, .tick = 0.10, .covered = 1.0},
+      {.sensor = "lidar", .mode = "coarse1", .unit = "m", .rate = 11, .tick = 0.09}};
+  EXPECT_EQ(accuracy_words(results, select_modes(results, {.metres = 1e-2})), "exact");
+  EXPECT_EQ(accuracy_words(results, select_modes(results, {.least_rate = 10.5})), "exact");
+}
+
 /// Ticks add up over sensor types.
 TEST(Advice, SelectsTheMostAccurateThatIsFastEnough) {
   EXPECT_EQ(advised({.least_rate = 4.0}), "exact") << "0.2 s";
