@@ -200,7 +200,7 @@ class ColourCaster : public FarmCaster, private scene::TileSink {
                      {.ranges = ranges, .hits = hits_, .quality = quality_, .sink = this});
   }
   void take(const scene::BeamTile& tile, const scene::TileSurfaces& surfaces) override {
-    light_.shade(X_WS_, tile, kRange, surfaces, scratch_);
+    light_.shade(X_WS_, tile, {kRange}, surfaces, scratch_);
     std::uint32_t colours[scene::kTileBeams];
     const std::uint32_t beams = tile.used * scene::kWidth;
     const auto& light = scratch_.lanes.light;
