@@ -109,6 +109,56 @@ TEST_F(Textures, OfObj) {
   EXPECT_EQ(world("a.obj").textures.at(0).rgb, kTexels);
 }
 
+/// Through Assimp: a texture in place of the diffuse colour, with v upward in the file; and a colour.
+TEST_F(Textures, OfCollada) {
+  write("a b.png", kPng);
+  const auto source = [](const char* id, const char* numbers, int count, const char* names) {
+    std::string params;
+    for (const char* name = names; *name != '\0'; ++name)
+      params += fmt::format("<param name=\"{}\" type=\"float\"/>", *name);
+    const std::size_t stride = std::string_view(names).size();
+    return fmt::format(
+        R"(<source id="{0}"><float_array id="{0}a" count="{1}">{2}</float_array><technique_common>)"
+        R"(<accessor source="#{0}a" count="{3}" stride="{4}">{5}</accessor></technique_common></source>)",
+        id, static_cast<std::size_t>(count) * stride, numbers, count, stride, params);
+  };
+  const auto triangle = [](const char* material) {
+    return fmt::format(R"(<triangles count="1" material="{}"><input semantic="VERTEX" source="#v" offset="0"/>)"
+                       R"(<input semantic="TEXCOORD" source="#t" offset="1" set="0"/><p>0 0 1 1 2 2</p></triangles>)",
+                       material);
+  };
+  const std::string dae =
+      R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">)"
+      R"(<asset><unit meter="1"/><up_axis>Z_UP</up_axis></asset><library_images><image id="i"><init_from>a%20b.png)"
+      R"(</init_from></image></library_images><library_effects><effect id="e"><profile_COMMON><newparam sid="s">)"
+      R"(<surface type="2D"><init_from>i</init_from></surface></newparam><newparam sid="m"><sampler2D><source>s)"
+      R"(</source></sampler2D></newparam><technique sid="x"><lambert><diffuse><texture texture="m" texcoord="c"/>)"
+      R"(</diffuse></lambert></technique></profile_COMMON></effect><effect id="f"><profile_COMMON><technique sid="x">)"
+      R"(<lambert><diffuse><color>0.5 0.25 0 1</color></diffuse></lambert></technique></profile_COMMON></effect>)"
+      R"(</library_effects><library_materials><material id="p"><instance_effect url="#e"/></material>)"
+      R"(<material id="q"><instance_effect url="#f"/></material></library_materials><library_geometries>)"
+      R"(<geometry id="g"><mesh>)" +
+      source("w", "0 0 0 1 0 0 0 1 1", 3, "XYZ") + source("t", "0 0 1 0 0 1", 3, "ST") +
+      R"(<vertices id="v"><input semantic="POSITION" source="#w"/></vertices>)" + triangle("P") + triangle("Q") +
+      R"(</mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="z"><node id="n">)"
+      R"(<instance_geometry url="#g"><bind_material><technique_common><instance_material symbol="P" target="#p">)"
+      R"(<bind_vertex_input semantic="c" input_semantic="TEXCOORD" input_set="0"/></instance_material>)"
+      R"(<instance_material symbol="Q" target="#q"/></technique_common></bind_material></instance_geometry></node>)"
+      R"(</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#z"/></scene></COLLADA>)";
+  const Triangles found = triangles("a.dae", dae);
+  ASSERT_EQ(found.material_of.size(), 2u);
+  const Material &picture = found.materials[found.material_of[0]], &plain = found.materials[found.material_of[1]];
+  EXPECT_EQ(picture.color, glm::dvec3(1.0));
+  EXPECT_EQ(picture.reflectance, kDefaultReflectance);
+  EXPECT_EQ(plain.color, glm::dvec3(0.5, 0.25, 0.0));
+  EXPECT_DOUBLE_EQ(plain.reflectance, luminance(plain.color));
+  EXPECT_EQ(found.texture_of[found.material_of[1]].texture, kNoTexture);
+  ASSERT_EQ(found.coordinates.size(), 6u);
+  EXPECT_EQ((std::vector<glm::vec2>(found.coordinates.begin(), found.coordinates.begin() + 3)),
+            (std::vector<glm::vec2>{{0, 1}, {1, 1}, {0, 0}}));
+  EXPECT_EQ(world("a.dae").textures.at(0).rgb, kTexels);
+}
+
 TEST_F(Textures, CoordinatesThatAreNone) {
   write("m.mtl", "newmtl a\nmap_Kd a.png\n");
   const std::string head = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 1\nvt nan 0\nvt 0 1e7\nvt 1 1\nusemtl a\n";
