@@ -90,11 +90,4 @@ glm::vec3 TexturePyramids::color_at(const world::TextureUse& use, glm::dvec2 at,
   return glm::mix(between_texels(levels[level], use, at), between_texels(levels[level + 1], use, at), part);
 }
 
-std::size_t TexturePyramids::bytes() const {
-  std::size_t sum = 0;
-  for (const auto& levels : textures_)
-    for (const Level& level : levels) sum += level.texels.size() * sizeof(std::uint32_t);
-  return sum;
-}
-
 }  // namespace sf::sensors

@@ -22,8 +22,6 @@ class TexturePyramids {
   /// @param at finite texture coordinates (world::MeshTextures)
   /// @param spread squares and product (uu, uv, vv) of the footprint's size in texture coordinates; NaN: without end
   glm::vec3 color_at(const world::TextureUse& use, glm::dvec2 at, const glm::vec3& spread) const;
-  /// Memory of all texels.
-  std::size_t bytes() const;
 
  private:
   struct Level {

@@ -116,7 +116,7 @@ class TexturedCamera : public FolderTest {
                                    const std::string& model = "", const char* caster = "auto") {
     write("a.glb", world::glb_of(square));
     return shoot_text(fmt::format("sunlight 0 skylight 1.6\nmodel( mesh \"{}\" pose [1 0 0 0] {} )\n"
-                                  "position( name \"r\" size [0.1 0.1 0.1] camera( rgb 1 pose6 [0 0 0.45 0 0 0] {} ) )",
+                                  "position( name \"r\" size [0.1 0.1 0.1] camera( rgb 1 pose6 [0 0 0.35 0 0 0] {} ) )",
                                   path("a.glb"), model, camera),
                       caster);
   }
@@ -175,8 +175,9 @@ TEST_F(TexturedCamera, HasItsFactorAndSize) {
   const float grey = base::linear_color(0x808080).x;
   EXPECT_EQ(image[41 + 10], base::srgb_color({0.5f, 0.0f, 1.0f}));
   EXPECT_EQ(image[41 + 30], base::srgb_color({0.5f * grey, 0.0f, grey}));
-  EXPECT_EQ(shoot({.picture = picture}, kCamera, "mesh_scale 2")[41 + 10], 0xFFFFFFu) << "twice as large";
-  EXPECT_EQ(shoot({.picture = picture}, kCamera, "mesh_scale 2")[41], shoot({.picture = picture}, kCamera)[41 + 10]);
+  const auto large = shoot({.picture = picture}, kCamera, "mesh_scale 2");
+  EXPECT_EQ(large[41], 0xFFFFFFu) << "the middle of the left texel";
+  EXPECT_EQ(large[41 + 20], shoot({.picture = picture}, kCamera)[41 + 20]) << "the border of both";
   const auto behind = shoot({.picture = picture}, kCamera, "mesh_rotation [0 0 180]");
   EXPECT_EQ(behind[41 + 30], 0xFFFFFFu) << "seen from behind, mirrored";
 }
@@ -232,7 +233,7 @@ TEST_F(TexturedCamera, AgreesWithEveryFace) {
     }
     EXPECT_GE(near, fast.size() - 3) << lens << ": all but borders of faces";
     EXPECT_GE(same, fast.size() - 40) << lens;
-    EXPECT_GT(std::set<std::uint32_t>(fast.begin(), fast.end()).size(), 1'000u) << lens;
+    EXPECT_GT(std::set<std::uint32_t>(fast.begin(), fast.end()).size(), 300u) << lens;
   }
 }
 
