@@ -17,7 +17,8 @@ namespace {
 bool sees_colours(const Mover& mover) {
   return std::ranges::any_of(mover.sensors, [](const Sensor& sensor) {
     return sensor.type == "camera" && std::ranges::any_of(sensor.settings, [](const Setting& setting) {
-             return setting.key == "rgb" && !setting.numbers.empty() && setting.numbers[0] != 0.0;
+             const bool wanted = setting.key == "rgb" || setting.key == "mono";
+             return wanted && !setting.numbers.empty() && setting.numbers[0] != 0.0;
            });
   });
 }
