@@ -16,6 +16,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <random>
 #include <regex>
 #include <string>
 #include <type_traits>
@@ -185,13 +186,44 @@ class SkipCaster : public SpatialCaster {
   std::vector<base::QualityFlag> quality_;
 };
 
+/// Gives all faces one material, whose picture repeats each metre along the two axes that a face is most parallel to.
+scene::Mesh with_texture(scene::Mesh mesh) {
+  mesh.materials.assign(mesh.faces.size(), 0);
+  for (const scene::Face& face : mesh.faces) {
+    const glm::dvec3 n = glm::abs(scene::plane_of(mesh, face).normal);
+    const int across = n.x > n.y && n.x > n.z ? 0 : n.y > n.z ? 1 : 2;
+    const auto at = [&](std::size_t k) {
+      const glm::dvec3& p = mesh.vertices[face[k]];
+      return glm::vec2(glm::dvec2(p[(across + 1) % 3], p[(across + 2) % 3]));
+    };
+    mesh.coordinates.push_back({at(0), at(1), at(2)});
+  }
+  return mesh;
+}
+
+/// A camera's light in a world with a texture of 1024 x 1024 px.
+sensors::CameraLight light_of(bool textured) {
+  world::World world;
+  if (!textured) return {world, {}};
+  world.textures.push_back({"", 1024, 1024, {}});
+  std::mt19937 random(1);
+  for (int i = 0; i < 3 << 20; ++i) world.textures[0].rgb.push_back(static_cast<std::uint8_t>(random()));
+  return {world, {{}}, {{.texture = 0}}};
+}
+
 /// A camera's colours: normals, shadows and shading of each tile, without paint.
 class ColourCaster : public FarmCaster, private scene::TileSink {
  public:
   ColourCaster(const scene::SurfaceTree& tree, const scene::HeightField* field, const std::vector<glm::dvec3>& beams,
                bool shadows)
-      : FarmCaster(tree, field, beams, 0), shadows_(shadows), colours_(beams.size()) {}
-  std::string name() const override { return shadows_ ? "farm, colours" : "farm, no shadows"; }
+      : FarmCaster(tree, field, beams, 0),
+        shadows_(shadows),
+        textured_(!tree.mesh.coordinates.empty()),
+        light_(light_of(textured_)),
+        colours_(beams.size()) {}
+  std::string name() const override {
+    return textured_ ? "farm, textures" : shadows_ ? "farm, colours" : "farm, no shadows";
+  }
   void cast(const base::RigidTransform& X_WS, std::span<double> ranges) override {
     const std::span instances(&instance_, field_ == nullptr ? 1 : 0);
     const scene::SceneView scene{instances, false, {field_, {}}};
@@ -201,7 +233,7 @@ class ColourCaster : public FarmCaster, private scene::TileSink {
                      {.ranges = ranges, .hits = hits_, .quality = quality_, .sink = this});
   }
   void take(const scene::BeamTile& tile, const scene::TileSurfaces& surfaces) override {
-    light_.shade(X_WS_, tile, kRange, surfaces, scratch_);
+    light_.shade(X_WS_, tile, {kRange, 1.0f / (160 * 160)}, surfaces, scratch_);  // of 320 px and 90 degrees
     std::uint32_t colours[scene::kTileBeams];
     const std::uint32_t beams = tile.used * scene::kWidth;
     const auto& light = scratch_.lanes.light;
@@ -212,8 +244,8 @@ class ColourCaster : public FarmCaster, private scene::TileSink {
   std::uint64_t colour_hash() const { return base::hash_bytes(colours_.data(), colours_.size() * sizeof(colours_[0])); }
 
  private:
-  bool shadows_;
-  sensors::CameraLight light_{world::World{}, {}};
+  bool shadows_, textured_;
+  sensors::CameraLight light_;
   sensors::CameraLight::Scratch scratch_;
   base::RigidTransform X_WS_;
   std::vector<std::uint32_t> colours_;
@@ -274,6 +306,7 @@ int run(const std::string& scene_name, const std::string& sensor, int poses, std
   scene.mesh = scene::join_triangles(std::move(scene.mesh));
   const scene::SurfaceTree tree = scene::build_tree(scene.mesh);
   const Cost built = since(start);
+  const scene::SurfaceTree textured = row == 0 ? scene::build_tree(with_texture(scene.mesh)) : scene::SurfaceTree{};
   const bool is_forest = !scene.forest.models.empty();
   std::optional<sensors::SpatialScene> forest;
   if (is_forest) forest.emplace(scene.forest, kRange, sensors::SceneExtras{.coarse = true});
@@ -302,6 +335,7 @@ int run(const std::string& scene_name, const std::string& sensor, int poses, std
     if (row > 0) add(std::make_unique<RollingCaster>(tree, beams, row));
     for (const bool shadows : {false, true})
       if (row == 0) add(std::make_unique<ColourCaster>(tree, nullptr, beams, shadows));
+    if (row == 0) add(std::make_unique<ColourCaster>(textured, nullptr, beams, true));
     add_skips([&](const std::vector<glm::dvec3>& cast, std::uint32_t columns) {
       return std::make_unique<FarmCaster>(tree, nullptr, cast, columns);
     });

@@ -5,8 +5,9 @@
 
 namespace sf::scene {
 
-/// Joins pairs of triangles in one plane that have an edge, an owner and a material in common, if they form a convex
-/// face, those with the longest edges first. Corners and edges on the outline of a pair remain.
+/// Joins pairs of triangles in one plane that have an edge, an owner and a material in common, and texture coordinates
+/// of one affine map within 1e-6, if they form a convex face, those with the longest edges first. Corners and edges on
+/// the outline of a pair remain.
 Mesh join_triangles(Mesh mesh);
 
 }  // namespace sf::scene

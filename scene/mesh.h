@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/ext/vector_double3.hpp>
+#include <glm/ext/vector_float2.hpp>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +19,9 @@ using Face = std::array<std::uint32_t, 4>;
 
 inline std::uint32_t corners_of(const Face& face) { return face[2] == face[3] ? 3 : 4; }
 
+/// Texture coordinates (world::MeshTextures) of a face's first three corners. They are affine over the face.
+using FaceCoordinates = std::array<glm::vec2, 3>;
+
 /// Invariant: the distance of a face's corners from its plane is below 1e-13 of its size plus 4 roundings of its
 /// coordinates; no face has an area of 0.
 struct Mesh {
@@ -25,6 +29,7 @@ struct Mesh {
   std::vector<Face> faces;               ///< fewer than 2^31
   std::vector<std::uint32_t> owners;     ///< per face: row in `world::World::models`; empty: Instance::owner
   std::vector<std::uint32_t> materials;  ///< per face: row in a table of the caller, or world::kNoMaterial; empty: none
+  std::vector<FaceCoordinates> coordinates;  ///< per face; empty: none
 
   /// Appends a face with new vertices. @param corners three or four @param owner nullopt: the mesh has no owners
   void add(std::span<const glm::dvec3> corners, std::optional<std::uint32_t> owner);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "scene/rasterizer/scratch.h"
+#include "scene/texture_map.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
@@ -28,6 +29,7 @@ class Scan {
     if (scene.terrain.field != nullptr)
       terrain_.emplace(*scene.terrain.field, base::relative(scene.terrain.X_WF, X_WS), range_max);
     if (terrain_ && terrain_->side > 0) build_horizon(*terrain_, horizon_);
+    for (const SceneMesh& mesh : s.meshes) textured_ = textured_ || !mesh.tree->mesh.coordinates.empty();
   }
   /// @param next tile that will be cast
   bool cast(const BeamTile& tile, const BeamTile& next);
@@ -55,7 +57,8 @@ class Scan {
   void meet_terrain(const BeamTile& tile, std::uint32_t vector);
   bool stays_above(const BeamTile& tile) const;
   void write(const BeamTile& tile, std::uint32_t vector);
-  void write_surfaces(std::uint32_t vector);
+  void write_surfaces(const BeamTile& tile, std::uint32_t vector);
+  void write_coordinates(const BeamTile& tile, std::uint32_t vector);
   bool end(const BeamTile& tile);
   const SeenPlane& plane_of(std::uint32_t face) { return known_plane(face).plane; }
   const KnownPlane& known_plane(std::uint32_t face) {
@@ -96,7 +99,11 @@ class Scan {
   static constexpr std::uint32_t kKnownPlanes = 64;
   KnownPlane planes_[kKnownPlanes];  ///< by face, modulo their number
   std::uint32_t normal_face_ = kNoFace;
-  glm::vec3 normal_;  ///< of `normal_face_`
+  glm::vec3 normal_;       ///< of `normal_face_`
+  bool textured_ = false;  ///< a mesh has texture coordinates
+  std::uint32_t texture_face_ = kNoFace;
+  bool has_texture_ = false;  ///< `texture_face_` has texture coordinates,
+  TextureMap texture_;        ///< which these are
 
   // One vector's results.
   alignas(64) double ranges_[kWidth];
@@ -260,14 +267,34 @@ void Scan::write(const BeamTile& tile, std::uint32_t vector) {
     for (std::uint32_t i = 0; i < kWidth; ++i) out_.normals[place[i]] = normal_of(hits_[i], first + i);
   if (!out_.materials.empty())
     for (std::uint32_t i = 0; i < kWidth; ++i) out_.materials[place[i]] = material_of(hits_[i], first + i);
-  if (out_.sink != nullptr) write_surfaces(vector);
+  if (out_.sink != nullptr) write_surfaces(tile, vector);
   flagged_ = flagged_ || grazing_ != 0;
   for (; grazing_ != 0; grazing_ &= grazing_ - 1)
     out_.quality[place[__builtin_ctz(grazing_)]] = base::QualityFlag::grazing;
 }
 
+/// Writes the texture coordinates of a vector's beams for the sink, after their normals.
+void Scan::write_coordinates(const BeamTile& tile, std::uint32_t vector) {
+  TileSurfaces& to = s_.surfaces;
+  for (std::uint32_t i = 0, beam = kWidth * vector; i < kWidth; ++i, ++beam) {
+    const std::uint32_t face = s_.face[beam];
+    if (face == kNoFace || face == kFloorFace || (terrain_hits_ >> i & 1) != 0) continue;
+    if (face != texture_face_) {
+      texture_face_ = face;
+      const SceneMesh& mesh = mesh_with(s_.meshes, face);
+      has_texture_ = !mesh.tree->mesh.coordinates.empty();
+      if (has_texture_) texture_ = seen_texture(mesh, face);
+    }
+    if (!has_texture_) continue;
+    const glm::dvec3 d{tile.dx[beam], tile.dy[beam], tile.dz[beam]};
+    const glm::dvec2 at = texture_.at(ranges_[i] * d);
+    to.u[beam] = at.x, to.v[beam] = at.y;
+    to.spread[beam] = texture_spread(texture_, {to.x[beam], to.y[beam], to.z[beam]}, d, ranges_[i]);
+  }
+}
+
 /// Writes what a vector's beams meet for the sink.
-void Scan::write_surfaces(std::uint32_t vector) {
+void Scan::write_surfaces(const BeamTile& tile, std::uint32_t vector) {
   TileSurfaces& to = s_.surfaces;
   const std::uint32_t first = kWidth * vector;
   std::memcpy(to.ranges + first, ranges_, sizeof ranges_);
@@ -277,13 +304,14 @@ void Scan::write_surfaces(std::uint32_t vector) {
     store(all(n.x), to.x + first), store(all(n.y), to.y + first), store(all(n.z), to.z + first);
     store(all(material_of(hits_[0], first)), to.materials + first);
     to.uniform |= 1u << vector;
-    return;
+  } else {
+    for (std::uint32_t i = 0; i < kWidth; ++i) {
+      const glm::vec3 n = normal_of(hits_[i], first + i);
+      to.x[first + i] = n.x, to.y[first + i] = n.y, to.z[first + i] = n.z;
+      to.materials[first + i] = material_of(hits_[i], first + i);
+    }
   }
-  for (std::uint32_t i = 0; i < kWidth; ++i) {
-    const glm::vec3 n = normal_of(hits_[i], first + i);
-    to.x[first + i] = n.x, to.y[first + i] = n.y, to.z[first + i] = n.z;
-    to.materials[first + i] = material_of(hits_[i], first + i);
-  }
+  if (textured_) write_coordinates(tile, vector);
 }
 
 /// Searches the terrain for some vectors at a time, since each step waits for the one before.

@@ -70,6 +70,8 @@ struct TileSurfaces {
   alignas(64) double ranges[kTileBeams];                              ///< [m] as ScanOutput::ranges
   alignas(64) float x[kTileBeams], y[kTileBeams], z[kTileBeams];      ///< as ScanOutput::normals
   alignas(64) std::uint32_t hits[kTileBeams], materials[kTileBeams];  ///< as in ScanOutput
+  alignas(64) double u[kTileBeams], v[kTileBeams];  ///< texture coordinates, where the face has some (Mesh), and
+  alignas(64) glm::vec3 spread[kTileBeams];         ///< products of their gradients (texture_map.h)
   std::uint32_t uniform = 0;  ///< bit mask of vectors whose beams all meet one face, or all nothing
 };
 

@@ -49,6 +49,36 @@ glm::vec3 seen_from(const glm::dmat3& R_WS, Vector normal, Vector direction) {
   return glm::vec3(rotate(glm::transpose(R_WS), normal));
 }
 
+/// Texture coordinates where a ray meets the plane of a face.
+glm::vec<2, Real> coordinates_along(const Ray& ray, const Mesh& mesh, std::size_t face) {
+  const auto corner = [&](int k) { return Vector(mesh.vertices[mesh.faces[face][k]]); };
+  const auto c = [&](std::size_t k) { return glm::vec<2, Real>(mesh.coordinates[face][k]); };
+  const Vector ab = corner(1) - corner(0), ac = corner(2) - corner(0), p = glm::cross(ray.direction, ac);
+  const Vector from = ray.origin - corner(0);
+  const Real determinant = glm::dot(ab, p), u = glm::dot(from, p) / determinant;
+  const Real v = glm::dot(ray.direction, glm::cross(from, ab)) / determinant;
+  return c(0) + u * (c(1) - c(0)) + v * (c(2) - c(0));
+}
+
+/// Sets the texture coordinates of a hit, and their spread by differences.
+void set_coordinates(const Ray& ray, const Mesh& mesh, std::size_t face, ReferenceHit& hit) {
+  constexpr Real kStep = 1e-7L;
+  const Vector d = glm::normalize(ray.direction);
+  const Vector e = glm::normalize(glm::cross(d, std::abs(d.z) < 0.7L ? Vector(0, 0, 1) : Vector(1, 0, 0)));
+  glm::vec<2, Real> gradient[2];
+  for (const int k : {0, 1}) {
+    const Vector step = kStep * (k == 0 ? e : glm::cross(d, e));
+    gradient[k] = (coordinates_along({ray.origin, d + step}, mesh, face) -
+                   coordinates_along({ray.origin, d - step}, mesh, face)) /
+                  (2.0L * kStep);
+  }
+  hit.coordinates = glm::dvec2(coordinates_along(ray, mesh, face));
+  const auto product = [&](int a, int b) {
+    return static_cast<float>(gradient[0][a] * gradient[0][b] + gradient[1][a] * gradient[1][b]);
+  };
+  hit.spread = {product(0, 0), product(0, 1), product(1, 1)};
+}
+
 struct FieldMeeting {
   Real range = HUGE_VALL;  ///< infinite: none
   Vector normal{};
@@ -107,6 +137,7 @@ ReferenceHit reference_scan(const RigidTransform& X_WS, glm::dvec3 direction, do
              std::abs(glm::dot(normal, glm::normalize(ray.direction))),
              seen_from(X_WS.R, rotate(instance.X_WI.R, normal), ray_W.direction),
              mesh.materials.empty() ? world::kNoMaterial : mesh.materials[row]};
+      if (!mesh.coordinates.empty()) set_coordinates(ray, mesh, row, hit);
     }
   }
   return hit;

@@ -14,6 +14,8 @@ struct ReferenceHit {
   long double cosine = 0.0L;                    ///< of the angle of incidence
   glm::vec3 normal{};                           ///< as ScanOutput::normals
   std::uint32_t material = world::kNoMaterial;  ///< as ScanOutput::materials
+  glm::dvec2 coordinates{};                     ///< of the texture, as TileSurfaces::u and v
+  glm::vec3 spread{};                           ///< as TileSurfaces::spread
 };
 
 /// @param direction in the sensor's frame; need not be a unit vector to rounding, ranges are along it

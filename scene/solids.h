@@ -27,6 +27,8 @@ base::Box box_of_holes(const world::World& world);
 Mesh holed_floor(const world::World& world, double reach);
 
 /// Returns the surface of a file's mesh, without owners. @param materials per triangle, as Mesh::materials
-Mesh mesh_of(const world::Mesh& triangles, std::vector<std::uint32_t> materials = {});
+/// @param coordinates as world::MeshTextures::corners, or empty
+Mesh mesh_of(const world::Mesh& triangles, std::vector<std::uint32_t> materials = {},
+             std::span<const glm::vec2> coordinates = {});
 
 }  // namespace sf::scene

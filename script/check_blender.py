@@ -1,6 +1,7 @@
 # Runs in Blender: builds a scene of meshes, renders it there and by `sensorfarm sense`, and compares pixel by pixel.
 # Cycles casts one ray through each pixel's centre. Its material has the light of docs/cameras.md#colours: a diffuse
-# surface in the sun, and skylight by the normal. So depths, labels, shadows and colours have to be equal, up to float32.
+# surface in the sun, and skylight by the normal. Some have textures, with texels larger than pixels. So depths, labels,
+# shadows and colours have to be equal, up to float32.
 import json
 import math
 import pathlib
@@ -14,6 +15,7 @@ import numpy
 WIDTH, HEIGHT, FOV = 640, 480, 70.0
 SUN, SUNLIGHT, SKYLIGHT = (-60.0, 35.0), 0.8, 0.3  # azimuth and elevation [deg]
 FLOOR = 128 / 255  # "gray50" as written below, in sRGB
+TEXTURED, TEXELS = ('ball', 'cube', 'wall'), 16  # along a side
 MOST_DEPTH = 2e-5  # relative; coordinates, matrices and rays are in 32 bits there
 program, folder = sys.argv[sys.argv.index('--') + 1:]
 folder = pathlib.Path(folder)
@@ -27,11 +29,44 @@ def encoded(light):
     return numpy.where(light <= 0.0031308, 12.92 * light, 1.055 * numpy.maximum(light, 0) ** (1 / 2.4) - 0.055)
 
 
+def picture(name):
+    """Returns a random picture of 8 bits, and the same in linear light, in which Cycles interpolates it linearly."""
+    values = numpy.random.default_rng(len(name)).integers(0, 256, (TEXELS, TEXELS, 4)) / 255
+    values[..., 3] = 1
+    light = numpy.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+    images = []
+    for suffix, pixels in (('', values), ('_linear', light)):
+        image = bpy.data.images.new(name + suffix, TEXELS, TEXELS, float_buffer=bool(suffix))
+        if suffix:
+            image.colorspace_settings.name = 'Non-Color'
+        image.pixels.foreach_set(pixels.astype(numpy.float32).ravel())
+        image.pack()
+        images.append(image)
+    return images
+
+
 def material(name, color):
     made = bpy.data.materials.new(name)
     made.use_nodes = True
-    made.node_tree.nodes['Principled BSDF'].inputs['Base Color'].default_value = (*color, 1)
+    surface = made.node_tree.nodes['Principled BSDF'].inputs['Base Color']
+    surface.default_value = (*color, 1)
+    if name in TEXTURED:
+        image = made.node_tree.nodes.new('ShaderNodeTexImage')
+        image.image, _ = picture(name)
+        made.node_tree.links.new(image.outputs['Color'], surface)
     return made
+
+
+def color_surfaces(made, color, *inputs):
+    """Gives inputs of a material's nodes its colour, or its picture."""
+    for each in inputs:
+        each.default_value = (*color, 1)
+    if made.name not in TEXTURED:
+        return
+    image = made.node_tree.nodes.new('ShaderNodeTexImage')
+    image.image = bpy.data.images[made.name + '_linear']
+    for each in inputs:
+        made.node_tree.links.new(image.outputs['Color'], each)
 
 
 def lit_as_here(made, color):
@@ -42,7 +77,7 @@ def lit_as_here(made, color):
     sun_height = math.sin(math.radians(SUN[1]))
     ground = (SKYLIGHT + SUNLIGHT * sun_height) / 4
     diffuse, emission, both = (nodes.new(f'ShaderNode{kind}') for kind in ('BsdfDiffuse', 'Emission', 'AddShader'))
-    diffuse.inputs['Color'].default_value = emission.inputs['Color'].default_value = (*color, 1)
+    color_surfaces(made, color, diffuse.inputs['Color'], emission.inputs['Color'])
     normal, split, seen = (nodes.new(f'ShaderNode{kind}') for kind in ('NewGeometry', 'SeparateXYZ', 'LightPath'))
     scale, once = nodes.new('ShaderNodeMath'), nodes.new('ShaderNodeMath')
     once.operation = 'MULTIPLY'
@@ -170,7 +205,7 @@ def in_daylight(colors):
         nodes, link = bpy.data.materials[name].node_tree.nodes, bpy.data.materials[name].node_tree.links.new
         nodes.clear()
         diffuse = nodes.new('ShaderNodeBsdfDiffuse')
-        diffuse.inputs['Color'].default_value = (*color, 1)
+        color_surfaces(bpy.data.materials[name], color, diffuse.inputs['Color'])
         link(diffuse.outputs[0], nodes.new('ShaderNodeOutputMaterial').inputs['Surface'])
     world = bpy.context.scene.world = bpy.data.worlds.new('sky')
     world.use_nodes = True

@@ -82,7 +82,7 @@ Cameras::Cameras(const SensorContext& context, const ParsedSensors& sensors)
       settings_(sensors.settings_as<CameraSettings>()),
       noise_(context.noise) {
   if (std::ranges::none_of(settings_, &CameraSettings::rgb)) return;
-  light_.emplace(context.world, materials());
+  light_.emplace(context.world, materials(), textures());
   if (std::ranges::any_of(settings_, [](const CameraSettings& s) { return s.rgb && !s.is_plain(); }))
     part_light_.resize(parts());
   part_colors_.resize(parts());
@@ -127,7 +127,8 @@ void Cameras::follow(std::size_t i, const base::RigidTransform& X_WS, const scen
     begin_shadows(i, X_WS, scratch.moved, thread);
   }
   const CameraSettings& s = settings_[samples()[i].row];
-  light_->shade(X_WS, tile, s.range_max, surfaces, scratch);
+  const double pixel = 1.0 / (s.lens.focal.x * s.lens.focal.y * s.samples);
+  light_->shade(X_WS, tile, {s.range_max, static_cast<float>(pixel), !s.lens.fisheye}, surfaces, scratch);
   const auto& light = scratch.lanes.light;
   const std::uint32_t beams = tile.used * scene::kWidth;
   if (s.is_plain()) {

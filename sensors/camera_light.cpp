@@ -22,7 +22,10 @@ constexpr float kUsualSky = 0.3f;
 
 }  // namespace
 
-CameraLight::CameraLight(const world::World& world, const std::vector<world::Material>& materials) : paint_(world) {
+CameraLight::CameraLight(const world::World& world, const std::vector<world::Material>& materials,
+                         const std::vector<world::TextureUse>& textures)
+    : textures_(textures), paint_(world) {
+  if (!textures.empty()) pictures_ = TexturePyramids(world.textures);
   for (const world::Material& each : materials) materials_.emplace_back(each.color);
   const world::Daylight day = world::daylight_of(world);
   const auto [sin, cos] = base::sin_cos(day.elevation);
@@ -49,7 +52,7 @@ struct CameraLight::Frame {
   const scene::BeamTile& tile;
   const scene::TileSurfaces& surfaces;
   std::uint32_t beams;
-  double depth_max;
+  const View& view;
   glm::mat3 R_WS;
   glm::vec3 up, sun;  ///< unit vectors in the sensor's frame
 };
@@ -60,6 +63,14 @@ glm::vec3 CameraLight::sky_at(float up, float sun) const {
   return glm::mix(kHorizon, kZenith, std::sqrt(glm::clamp(up, 0.0f, 1.0f))) * (sky_ / kUsualSky);
 }
 
+/// Returns the colour of a textured surface, filtered over the pixel's footprint on it.
+glm::vec3 CameraLight::texture_at(const Frame& f, std::uint32_t i) const {
+  const float forward = f.tile.x[i], pixel = f.view.flat ? f.view.pixel * (forward * forward * forward) : f.view.pixel;
+  const std::uint32_t material = f.surfaces.materials[i];
+  return materials_[material] *
+         pictures_.color_at(textures_[material], {f.surfaces.u[i], f.surfaces.v[i]}, pixel * f.surfaces.spread[i]);
+}
+
 /// Returns the colour of the floor, or of paint on it, where a beam meets it.
 const glm::vec3& CameraLight::ground_at(const Frame& f, double range, std::uint32_t i) const {
   const glm::vec3* const paint =
@@ -67,8 +78,9 @@ const glm::vec3& CameraLight::ground_at(const Frame& f, double range, std::uint3
   return paint != nullptr ? *paint : floor_;
 }
 
-/// Returns the colour of a surface; null: the ground's, which depends on the place.
+/// Returns the colour of a surface; null: it depends on the place.
 const glm::vec3* CameraLight::color_of(std::uint32_t hit, std::uint32_t material) const {
+  if (is_textured(material)) return nullptr;
   if (material < materials_.size()) return &materials_[material];
   if (hit < models_.size()) return &models_[hit];
   return paint_.empty() ? &floor_ : nullptr;
@@ -80,7 +92,7 @@ void CameraLight::color_vector(const Frame& f, std::uint32_t first, Lanes& lanes
   const double* const ranges = f.surfaces.ranges + first;
   const glm::vec3* color = nullptr;
   if ((f.surfaces.uniform >> first / kWidth & 1) != 0 && hits[0] != base::kNoHit &&
-      *std::max_element(ranges, ranges + kWidth) < f.depth_max * (1.0 - 1e-9))
+      *std::max_element(ranges, ranges + kWidth) < f.view.depth_max * (1.0 - 1e-9))
     color = color_of(hits[0], materials[0]);
   if (color != nullptr) {
     for (int c = 0; c < 3; ++c) std::fill_n(lanes.light[c] + first, kWidth, (*color)[c]);
@@ -88,13 +100,13 @@ void CameraLight::color_vector(const Frame& f, std::uint32_t first, Lanes& lanes
   }
   for (std::uint32_t k = 0, i = first; k < kWidth; ++k, ++i) {
     glm::vec3 found;
-    if (hits[k] == base::kNoHit || !(ranges[k] * f.tile.dx[i] < f.depth_max)) {
+    if (hits[k] == base::kNoHit || !(ranges[k] * f.tile.dx[i] < f.view.depth_max)) {
       const glm::vec3 d(f.tile.x[i], f.tile.y[i], f.tile.z[i]);
       found = sky_at(glm::dot(d, f.up), glm::dot(d, f.sun));
       lanes.ambient[i] = 1.0f, lanes.sun[i] = 0.0f;
     } else {
       color = color_of(hits[k], materials[k]);
-      found = color != nullptr ? *color : ground_at(f, ranges[k], i);
+      found = color != nullptr ? *color : is_textured(materials[k]) ? texture_at(f, i) : ground_at(f, ranges[k], i);
     }
     for (int c = 0; c < 3; ++c) lanes.light[c][i] = found[c];
   }
@@ -144,10 +156,10 @@ void CameraLight::add_light(const Frame& f, std::span<const std::uint32_t> shine
     for (std::uint32_t i = 0; i < f.beams; ++i) light[i] = light[i] * lanes.ambient[i] + light[i] * lanes.sun[i];
 }
 
-void CameraLight::shade(const base::RigidTransform& X_WS, const scene::BeamTile& tile, double depth_max,
+void CameraLight::shade(const base::RigidTransform& X_WS, const scene::BeamTile& tile, const View& view,
                         const scene::TileSurfaces& surfaces, Scratch& s) const {
   const glm::mat3 R_WS(X_WS.R), R_SW = glm::transpose(R_WS);
-  const Frame frame{X_WS, tile, surfaces, kWidth * tile.used, depth_max, R_WS, R_SW[2], R_SW * glm::vec3(to_sun_)};
+  const Frame frame{X_WS, tile, surfaces, kWidth * tile.used, view, R_WS, R_SW[2], R_SW * glm::vec3(to_sun_)};
   light_surfaces(frame, s.lanes);
   std::array<std::uint32_t, scene::kTileVectors> lit{};
   s.points.count = 0;

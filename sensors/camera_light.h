@@ -15,6 +15,7 @@
 
 #include "scene/shadows.h"
 #include "sensors/road_paint.h"
+#include "sensors/texture_pyramids.h"
 #include "world/world.h"
 
 namespace sf::sensors {
@@ -22,8 +23,9 @@ namespace sf::sensors {
 /// Any number of threads may read it at once.
 class CameraLight {
  public:
-  /// @param materials by row of scene::ScanOutput::materials
-  CameraLight(const world::World& world, const std::vector<world::Material>& materials);
+  /// @param materials by row of scene::ScanOutput::materials  @param textures of these, or empty
+  CameraLight(const world::World& world, const std::vector<world::Material>& materials,
+              const std::vector<world::TextureUse>& textures = {});
   /// Reads the colours of models again.
   void update(const world::World& world);
 
@@ -48,14 +50,23 @@ class CameraLight {
     std::array<std::uint32_t, scene::kTileVectors> dark;
     Lanes lanes;
   };
+  /// What a camera sees.
+  struct View {
+    double depth_max = 0.0;  ///< [m] along the x axis: surfaces from there on are not seen
+    float pixel = 0.0f;      ///< [sr] of a beam's part of the image; in a flat image, of one along the x axis
+    bool flat = true;        ///< a pinhole's, else a fisheye's
+  };
   /// Computes `Scratch::lanes.light` of a tile, after its scan and `Scratch::shadows.begin`.
-  /// @param depth_max [m] along the x axis: surfaces from there on are not seen
-  void shade(const base::RigidTransform& X_WS, const scene::BeamTile& tile, double depth_max,
+  void shade(const base::RigidTransform& X_WS, const scene::BeamTile& tile, const View& view,
              const scene::TileSurfaces& surfaces, Scratch& scratch) const;
 
  private:
   struct Frame;
   glm::vec3 sky_at(float up, float sun) const;
+  bool is_textured(std::uint32_t material) const {
+    return material < textures_.size() && textures_[material].texture != world::kNoTexture;
+  }
+  glm::vec3 texture_at(const Frame& frame, std::uint32_t i) const;
   const glm::vec3& ground_at(const Frame& frame, double range, std::uint32_t i) const;
   const glm::vec3* color_of(std::uint32_t hit, std::uint32_t material) const;
   void light_surfaces(const Frame& frame, Lanes& lanes) const;
@@ -66,8 +77,10 @@ class CameraLight {
   glm::dvec3 to_sun_{};
   float sun_ = 0.0f, sky_ = 0.0f, ground_ = 0.0f;
   glm::vec3 floor_;
-  std::vector<glm::vec3> models_;     ///< by row
-  std::vector<glm::vec3> materials_;  ///< by row
+  std::vector<glm::vec3> models_;            ///< by row
+  std::vector<glm::vec3> materials_;         ///< by row
+  std::vector<world::TextureUse> textures_;  ///< of these, or empty
+  TexturePyramids pictures_;
   RoadPaint paint_;
 };
 

@@ -24,7 +24,7 @@ double longest_range(std::span<const SpatialScanner> scanners) {
 SceneExtras extras_of(std::span<const SpatialScanner> scanners) {
   SceneExtras extras;
   for (const SpatialScanner& s : scanners)
-    extras.coarse = extras.coarse || s.angle > 0.0, extras.materials = extras.materials || s.materials;
+    extras.coarse |= s.angle > 0.0, extras.materials |= s.materials, extras.textures |= s.follows;
   return extras;
 }
 
@@ -205,6 +205,7 @@ void SpatialScans::cast_reference(const base::RigidTransform& X_WS, const scene:
     out.hits[i] = surfaces.hits[k] = hit.owner;
     surfaces.x[k] = hit.normal.x, surfaces.y[k] = hit.normal.y, surfaces.z[k] = hit.normal.z;
     surfaces.materials[k] = hit.material;
+    surfaces.u[k] = hit.coordinates.x, surfaces.v[k] = hit.coordinates.y, surfaces.spread[k] = hit.spread;
     if (!out.cosines.empty()) out.cosines[i] = static_cast<float>(hit.cosine);
     if (!out.normals.empty()) out.normals[i] = hit.normal;
     if (!out.materials.empty()) out.materials[i] = hit.material;

@@ -26,7 +26,7 @@ struct SpatialScanner {
   bool plain = false;      ///< beams are cast into the reading's values
   bool normals = false;    ///< also casts the normals of surfaces
   bool materials = false;  ///< surfaces have their materials, which are also cast,
-  bool follows = false;    ///< or passed to `follow`
+  bool follows = false;    ///< or passed to `follow` with texture coordinates
   bool single = false;     ///< as scene::ScanOutput::single
 };
 
@@ -56,6 +56,7 @@ class SpatialScans : public HostBackend {
 
   /// As SpatialScene::materials, if a sensor uses them.
   const std::vector<world::Material>& materials() const { return scene_.materials(); }
+  const std::vector<world::TextureUse>& textures() const { return scene_.textures(); }
   /// Precedes calls of `follow` for tiles that are cast from one pose. Several threads call both at once.
   virtual void begin_follow(std::size_t /*sample*/, const base::RigidTransform& /*X_WS*/, unsigned /*thread*/) {}
   /// Computes further quantities from the hits of a tile.

@@ -72,16 +72,23 @@ SpatialScene::SpatialScene(const world::World& world, double reach, const SceneE
 
 void SpatialScene::add_meshes(const world::World& world, const SceneExtras& extras) {
   std::vector<std::vector<std::uint32_t>> of_faces(world.meshes.size());
+  std::vector<std::span<const glm::vec2>> coordinates(world.meshes.size());
   for (const world::MeshMaterials& row : world.mesh_materials) {
     if (!extras.materials) break;
     const auto first = static_cast<std::uint32_t>(materials_.size());
     for (const std::uint32_t material : row.triangles)
       of_faces[row.mesh].push_back(material == world::kNoMaterial ? material : first + material);
     materials_.insert(materials_.end(), row.materials.begin(), row.materials.end());
+    const auto textured = std::ranges::find(world.mesh_textures, row.mesh, &world::MeshTextures::mesh);
+    if (!extras.textures || textured == world.mesh_textures.end()) continue;
+    textures_.resize(first);
+    textures_.insert(textures_.end(), textured->materials.begin(), textured->materials.end());
+    coordinates[row.mesh] = textured->corners;
   }
+  if (!textures_.empty()) textures_.resize(materials_.size());
   for (std::size_t i = 0; i < world.meshes.size(); ++i) {
     if (extras.coarse) levels_.push_back(scene::levels_of(world.meshes[i], of_faces[i]));
-    meshes_.push_back(scene::build_tree(scene::mesh_of(world.meshes[i], std::move(of_faces[i]))));
+    meshes_.push_back(scene::build_tree(scene::mesh_of(world.meshes[i], std::move(of_faces[i]), coordinates[i])));
   }
 }
 

@@ -18,7 +18,8 @@ namespace sf::sensors {
 /// Optional parts of the scene.
 struct SceneExtras {
   bool coarse = false;     ///< coarser meshes, for `list`
-  bool materials = false;  ///< faces have their materials
+  bool materials = false;  ///< faces have their materials,
+  bool textures = false;   ///< and also texture coordinates
 };
 
 /// Surroundings of a sensor, and when it casts its beams.
@@ -62,6 +63,9 @@ class SpatialScene {
   /// Materials of all meshes, by row as in scene::ScanOutput::materials. Empty unless asked for.
   const std::vector<world::Material>& materials() const { return materials_; }
 
+  /// Their textures; empty: none has one, or they were not asked for.
+  const std::vector<world::TextureUse>& textures() const { return textures_; }
+
   scene::Terrain terrain() const { return {terrain_.empty() ? nullptr : &terrain_, X_WF_}; }
   /// Lists the walls, and all other surfaces of the carrier's world within range.
   void list(const SensorView& view, SceneList& out) const;
@@ -92,6 +96,7 @@ class SpatialScene {
   scene::HeightField terrain_;  ///< empty: none
   base::RigidTransform X_WF_;   ///< its frame
   std::vector<world::Material> materials_;
+  std::vector<world::TextureUse> textures_;
   std::vector<scene::SurfaceTree> meshes_;
   std::vector<std::vector<scene::MeshLevel>> levels_;  ///< per mesh; empty: only exact ones
   std::vector<Part> fixed_;

@@ -11,6 +11,7 @@
 #include "base/files.h"
 #include "base/suggest.h"
 #include "world/ground.h"
+#include "world/meshes/textures.h"
 #include "world/ros_map.h"
 #include "world/serialization.h"
 #include "world/shapes.h"
@@ -123,7 +124,8 @@ std::string free_model_name(const World& world, std::string name) {
 
 }  // namespace
 
-/// Returns the row of a mesh of another world, which is appended with its materials unless it is there.
+/// Returns the row of a mesh of another world, which is appended with its materials unless it is there, without its
+/// textures (read_textures).
 std::uint32_t mesh_row(World& world, const World& from, std::uint32_t mesh_of_other) {
   const Mesh& mesh = from.meshes[mesh_of_other];
   const auto same = [&](const Mesh& other) {
@@ -243,7 +245,10 @@ std::uint32_t append_robot_of(World& world, const std::string& file, const std::
     std::erase_if(robots.world.warnings, [&](const Warning& w) { return w.file == file && w.line > lines; });
   }
   world.warnings.insert(world.warnings.end(), robots.world.warnings.begin(), robots.world.warnings.end());
-  return append_robot(world, robots.world, original, free_model_name(world, name), {});
+  const std::uint32_t row = append_robot(world, robots.world, original, free_model_name(world, name), {});
+  std::map<std::string, Triangles> files;
+  if (read_textures(world, files)) update_extent_and_hash(world);
+  return row;
 }
 
 bool is_same_kind(const World& world, std::uint32_t a, std::uint32_t b) {

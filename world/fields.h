@@ -19,6 +19,7 @@ inline constexpr auto words_of(Emitter::Kind) { return std::to_array<std::string
 inline constexpr auto words_of(Fiducial::Type) {
   return std::to_array<std::string_view>({"marker", "target", "threat"});
 }
+inline constexpr auto words_of(TextureWrap) { return std::to_array<std::string_view>({"repeat", "clamp", "mirror"}); }
 inline constexpr auto words_of(LightState) {
   return std::to_array<std::string_view>({"dark", "red", "yellow", "green", "flashing red", "flashing yellow"});
 }
@@ -28,6 +29,10 @@ inline constexpr auto words_of(LightState) {
 // --- Parts of rows
 
 template <> inline constexpr auto kFields<glm::dvec2> = std::make_tuple(field(&glm::dvec2::x), field(&glm::dvec2::y));
+
+template <> inline constexpr auto kFields<glm::vec2> = std::make_tuple(
+    field(&glm::vec2::x, Bounds{-kMostTextureCoordinate, kMostTextureCoordinate}),
+    field(&glm::vec2::y, Bounds{-kMostTextureCoordinate, kMostTextureCoordinate}));
 
 template <> inline constexpr auto kFields<glm::dvec3> = std::make_tuple(
     field(&glm::dvec3::x), field(&glm::dvec3::y), field(&glm::dvec3::z));
@@ -140,6 +145,16 @@ template <> inline constexpr auto kFields<Material> = std::make_tuple(
 template <> inline constexpr auto kFields<MeshMaterials> = std::make_tuple(
     field(&MeshMaterials::mesh), field(&MeshMaterials::materials), field(&MeshMaterials::triangles));
 
+template <> inline constexpr auto kFields<Texture> = std::make_tuple(
+    path(&Texture::file), field(&Texture::width, Bounds{1, kMostTextureSide}),
+    field(&Texture::height, Bounds{1, kMostTextureSide}), field(&Texture::rgb));
+
+template <> inline constexpr auto kFields<TextureUse> = std::make_tuple(
+    field(&TextureUse::texture), field(&TextureUse::u), field(&TextureUse::v));
+
+template <> inline constexpr auto kFields<MeshTextures> = std::make_tuple(
+    field(&MeshTextures::mesh), field(&MeshTextures::materials), field(&MeshTextures::corners));
+
 template <> inline constexpr auto kFields<MeshModel> = std::make_tuple(
     field(&MeshModel::mesh), field(&MeshModel::model), field(&MeshModel::X_BF));
 
@@ -188,7 +203,9 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     // since version 13
     field(&World::reflectances), field(&World::terrain),
     // since version 14
-    field(&World::mesh_materials), field(&World::daylight));
+    field(&World::mesh_materials), field(&World::daylight),
+    // since version 15
+    field(&World::textures), field(&World::mesh_textures));
 
 // clang-format on
 

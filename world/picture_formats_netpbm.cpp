@@ -104,31 +104,30 @@ void read_row(Cursor& c, const Format& format, std::vector<std::uint8_t>& rgba) 
 }
 
 /// Returns the smallest number of bytes of all pixels.
-std::size_t least_bytes(const Format& format, const Bitmap& grid) {
-  if (format.bits && format.binary) return std::size_t{(grid.width + 7) / 8} * grid.height;
-  const std::size_t samples = std::size_t{grid.width} * grid.height * format.channels;
+std::size_t least_bytes(const Format& format, const PictureSink& picture) {
+  if (format.bits && format.binary) return std::size_t{(picture.width() + 7) / 8} * picture.height();
+  const std::size_t samples = std::size_t{picture.width()} * picture.height() * format.channels;
   return format.binary ? samples * format.bytes_per_sample() : samples;
 }
 
 }  // namespace
 
-void decode_netpbm(const std::string& bytes, GridBuilder& grid) {
-  Cursor c{grid.file(), bytes, 2};
+void decode_netpbm(const std::string& bytes, PictureSink& out) {
+  Cursor c{out.file(), bytes, 2};
   const int kind = bytes[1] - '0';
   const std::uint32_t width = next_number(c);
-  grid.begin(width, next_number(c));
+  out.begin(width, next_number(c));
   Format format{.binary = kind > 3, .channels = kind % 3 == 0 ? 3u : 1u, .white = 1, .bits = kind % 3 == 1};
   if (!format.bits) format.white = next_number(c);
   if (format.white < 1 || format.white > 65535)
     fail(c, fmt::format("a largest value of {}; expected 1 to 65535", format.white));
-  if (format.binary) end_header(c, least_bytes(format, grid.grid()));
-  if (bytes.size() - c.at < least_bytes(format, grid.grid()))
-    fail(c, "fewer pixels than the header states; it is truncated");
+  if (format.binary) end_header(c, least_bytes(format, out));
+  if (bytes.size() - c.at < least_bytes(format, out)) fail(c, "fewer pixels than the header states; it is truncated");
 
   std::vector<std::uint8_t> rgba(std::size_t{width} * 4, 255);
-  for (std::uint32_t y = 0; y < grid.grid().height; ++y) {
+  for (std::uint32_t y = 0; y < out.height(); ++y) {
     read_row(c, format, rgba);
-    grid.add({rgba, false});
+    out.add({rgba, false});
   }
 }
 

@@ -39,6 +39,9 @@ struct RowWriter {
       out.put_string(role == Role::path ? relative(value) : value);
     } else if constexpr (kIsRow<T>) {
       put_row(value);
+    } else if constexpr (std::is_same_v<T, base::Bytes>) {
+      out.put(static_cast<std::uint32_t>(value.size()));
+      out.put_bytes(value.data(), value.size());
     } else {
       out.put(static_cast<std::uint32_t>(value.size()));
       for (const auto& element : value) put(element, role);
@@ -105,6 +108,9 @@ struct RowReader {
       value = in.get_string();
     } else if constexpr (kIsRow<T>) {
       get_row(value);
+    } else if constexpr (std::is_same_v<T, base::Bytes>) {
+      value.resize(count(1));
+      in.get_into(value.data(), value.size());
     } else {
       value.resize(count(least_bytes<typename T::value_type>()));
       for (auto& element : value) get(element);
@@ -145,7 +151,8 @@ bool is_within(const T& value, const Bounds& bounds = {}) {
     bool good = true;
     for_each_field<T>([&](const auto& field) { good = good && is_within(value.*field.member, field.bounds); });
     return good;
-  } else if constexpr (std::is_same_v<T, std::string> || !requires { value.back(); }) {
+  } else if constexpr (std::is_same_v<T, std::string> || std::is_same_v<T, base::Bytes> ||
+                       !requires { value.back(); }) {
     return true;
   } else {
     return std::all_of(value.begin(), value.end(), [&](const auto& element) { return is_within(element, bounds); });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "world/meshes/triangles.h"
 #include "world/serialization.h"
@@ -13,9 +14,10 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
-constexpr std::uint16_t kVersion = 14;
+constexpr std::uint16_t kVersion = 15;
 // Older versions lack the last fields of World. The oldest version is written that has all fields other than zero.
 constexpr std::uint16_t kOldestVersion = 5;
+constexpr std::size_t kSinceVersion15 = least_bytes<std::vector<Texture>>() + least_bytes<std::vector<MeshTextures>>();
 constexpr std::size_t kSinceVersion14 =
     least_bytes<std::vector<MeshMaterials>>() + least_bytes<std::vector<Daylight>>();
 constexpr std::size_t kSinceVersion13 = least_bytes<std::vector<Reflectance>>() + least_bytes<std::vector<Terrain>>();
@@ -29,6 +31,7 @@ constexpr std::size_t kSinceVersion7 = least_bytes<std::vector<Ramp>>() + least_
 constexpr std::size_t kSinceVersion6 = least_bytes<glm::dvec3>() + least_bytes<std::vector<Lamp>>() + sizeof(double);
 
 std::uint16_t version_of(const World& world) {
+  if (!world.textures.empty() || !world.mesh_textures.empty()) return 15;
   if (!world.mesh_materials.empty() || !world.daylight.empty()) return 14;
   if (!world.reflectances.empty() || !world.terrain.empty()) return 13;
   if (!world.meshes.empty() || !world.mesh_models.empty()) return 12;
@@ -45,7 +48,8 @@ std::size_t missing_bytes(std::uint16_t version) {
   return (version < 6 ? kSinceVersion6 : 0) + (version < 7 ? kSinceVersion7 : 0) + (version < 8 ? kSinceVersion8 : 0) +
          (version < 9 ? kSinceVersion9 : 0) + (version < 10 ? kSinceVersion10 : 0) +
          (version < 11 ? kSinceVersion11 : 0) + (version < 12 ? kSinceVersion12 : 0) +
-         (version < 13 ? kSinceVersion13 : 0) + (version < 14 ? kSinceVersion14 : 0);
+         (version < 13 ? kSinceVersion13 : 0) + (version < 14 ? kSinceVersion14 : 0) +
+         (version < 15 ? kSinceVersion15 : 0);
 }
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("corrupt world snapshot: " + reason); }
@@ -73,7 +77,26 @@ void check_links(const World& world) {
   good &= std::all_of(world.reflectances.begin(), world.reflectances.end(), known);
   for (const MeshModel& row : world.mesh_models) good &= row.mesh < world.meshes.size();
   for (const MeshMaterials& row : world.mesh_materials) good &= row.mesh < world.meshes.size();
+  for (const MeshTextures& row : world.mesh_textures) {
+    good &= row.mesh < world.meshes.size();
+    for (const TextureUse& use : row.materials)
+      good &= use.texture == kNoTexture || use.texture < world.textures.size();
+  }
   if (!good) refuse("a row refers to a row that does not exist");
+}
+
+/// @param materials per mesh: their number
+bool are_textures_good(const World& world, std::vector<std::size_t> materials) {
+  bool good = true;
+  std::size_t texels = 0;
+  for (const Texture& texture : world.textures) {
+    const std::size_t own = std::size_t{texture.width} * texture.height;
+    texels += own, good &= texture.rgb.size() == 3 * own;
+  }
+  for (const MeshTextures& row : world.mesh_textures)
+    good &= row.materials.size() == std::exchange(materials[row.mesh], 0) && !row.materials.empty() &&
+            row.corners.size() == world.meshes[row.mesh].corners.size();
+  return good && texels <= kMostTexels;
 }
 
 // Checks the invariants of rows in world.h, because users of a world do not check them again. World files are checked
@@ -90,15 +113,17 @@ void check_rows(const World& world) {
     good &= mesh.corners.size() % 3 == 0 && mesh.corners.size() / 3 <= kMostTriangles;
     for (const std::uint32_t corner : mesh.corners) good &= corner < mesh.vertices.size();
   }
-  std::vector<bool> with_materials(world.meshes.size());
+  std::vector<std::size_t> materials(world.meshes.size(), 0);  // per mesh: their number; 0: none
   for (const MeshMaterials& row : world.mesh_materials) {
-    good &= !with_materials[row.mesh] && row.triangles.size() == world.meshes[row.mesh].corners.size() / 3;
+    good &= materials[row.mesh] == 0 && !row.materials.empty() &&
+            row.triangles.size() == world.meshes[row.mesh].corners.size() / 3;
     for (const std::uint32_t material : row.triangles)
       good &= material < row.materials.size() || material == kNoMaterial;
     for (const Material& material : row.materials)
       for (int k = 0; k < 3; ++k) good &= material.color[k] >= 0.0 && material.color[k] <= 1.0;
-    with_materials[row.mesh] = true;
+    materials[row.mesh] = row.materials.size();
   }
+  good &= are_textures_good(world, std::move(materials));
   good &= world.terrain.size() <= 1 && world.daylight.size() <= 1;
   for (const Terrain& terrain : world.terrain)
     good &= std::min(terrain.columns, terrain.rows) >= 2 && std::max(terrain.columns, terrain.rows) <= kMostSide &&

@@ -93,7 +93,7 @@ constexpr auto kHashedIfSet =
     std::make_tuple(&World::earth_field, &World::lamps, &World::ambient_light, &World::ramps, &World::marking_heights,
                     &World::fiducials, &World::shapes, &World::heat_sources, &World::temperature, &World::variations,
                     &World::floor_unseen, &World::meshes, &World::mesh_models, &World::reflectances, &World::terrain,
-                    &World::mesh_materials, &World::daylight);
+                    &World::mesh_materials, &World::daylight, &World::textures, &World::mesh_textures);
 
 template <class Members, class Member>
 bool is_among(const Members& members, Member member) {

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <glm/ext/vector_float2.hpp>
 #include <map>
 #include <span>
 #include <string>
@@ -314,6 +315,21 @@ struct MeshMaterials {
   std::vector<std::uint32_t> triangles;  ///< per triangle: row in `materials`, or kNoMaterial
 };
 
+/// A picture on surfaces, for cameras with colours.
+struct Texture {
+  std::string file;                     ///< the picture, or the mesh that contains it
+  std::uint32_t width = 0, height = 0;  ///< [px] in [1, kMostTextureSide]
+  std::vector<std::uint8_t> rgb;        ///< 3 bytes of sRGB per texel, row by row from the top
+};
+
+/// Textures of a mesh with materials.
+struct MeshTextures {
+  std::uint32_t mesh = 0;             ///< row in `World::meshes` and of a row of MeshMaterials; at most one per mesh
+  std::vector<TextureUse> materials;  ///< per row of MeshMaterials::materials: row in `World::textures`
+  std::vector<glm::vec2> corners;     ///< per corner of the mesh: texture coordinates, (0, 0) at the picture's top left
+                                      ///< and (1, 1) at its bottom right, within kMostTextureCoordinate
+};
+
 /// A model that spatial sensors see as a mesh. Planar sensors and contacts use its outline.
 struct MeshModel {
   std::uint32_t mesh = 0;   ///< row in `World::meshes`
@@ -409,7 +425,9 @@ struct World {
   std::vector<Reflectance> reflectances;
   std::vector<Terrain> terrain;  ///< at most one
   std::vector<MeshMaterials> mesh_materials;
-  std::vector<Daylight> daylight;         ///< at most one; empty: the default (daylight_of)
+  std::vector<Daylight> daylight;  ///< at most one; empty: the default (daylight_of)
+  std::vector<Texture> textures;   ///< empty unless a camera of the file has colours
+  std::vector<MeshTextures> mesh_textures;
   std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as opened by load_roads
   std::map<std::string, int> unmodelled;  ///< entity types that become plain bodies, with their counts
   double interval = 0.1;                  ///< [s] simulated time per tick (`interval_sim`)

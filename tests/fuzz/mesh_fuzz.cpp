@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const std::size_t format = data[0] % 5;
     if (format == 4) {
-      std::map<std::string, world::Material, std::less<>> materials;
+      std::map<std::string, world::MtlMaterial, std::less<>> materials;
       world::read_mtl(bytes, materials);
       return 0;
     }
@@ -44,6 +44,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(found.material_of.empty() || found.material_of.size() == found.corners.size() / 3);
     for (const std::uint32_t material : found.material_of)
       require(material < found.materials.size() || material == world::kNoMaterial);
+    require(found.coordinates.empty() || found.coordinates.size() == found.corners.size());
+    for (const glm::vec2& c : found.coordinates)
+      require(std::abs(c.x) <= world::kMostTextureCoordinate && std::abs(c.y) <= world::kMostTextureCoordinate);
+    require(found.texture_of.empty() || found.texture_of.size() == found.materials.size());
+    for (const world::TextureUse& use : found.texture_of)
+      require(use.texture < found.textures.size() || use.texture == world::kNoTexture);
     for (const world::Material& material : found.materials)
       require(material.reflectance >= 0.0 && material.reflectance <= world::kMostReflectance);
   } catch (const base::InputError& error) {

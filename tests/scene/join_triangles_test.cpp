@@ -54,6 +54,28 @@ TEST(JoinTriangles, Cases) {
   EXPECT_EQ(joined({}), 0u) << "nothing";
 }
 
+/// Triangles of one affine map of texture coordinates are joined, and keep it.
+TEST(JoinTriangles, TextureCoordinates) {
+  const glm::vec2 c[] = {{0, 1}, {3, 1}, {3, 0}, {0, 0}};  // of the corners
+  const auto with = [&](const FaceCoordinates& first, const FaceCoordinates& second) {
+    Mesh mesh = square();
+    mesh.coordinates = {first, second};
+    return join_triangles(mesh);
+  };
+  const FaceCoordinates first{c[0], c[1], c[2]}, second{c[0], c[2], c[3]};
+  const Mesh whole = with(first, second);
+  ASSERT_EQ(whole.faces.size(), 1u);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(whole.coordinates[0][k], c[whole.faces[0][k]]);
+  Mesh turned = square();
+  std::swap(turned.faces[1][0], turned.faces[1][1]), turned.coordinates = {first, {c[2], c[0], c[3]}};
+  EXPECT_EQ(joined(turned), 1u) << "wound the other way";
+  EXPECT_EQ(with(first, {c[0], c[2] + 5e-7f, c[3]}).faces.size(), 1u) << "rounding";
+  EXPECT_EQ(with(first, {c[0] + 1.0f, c[2] + 1.0f, c[3] + 1.0f}).faces.size(), 2u) << "a seam, though a copy fits";
+  EXPECT_EQ(with(first, {c[0], c[2] + 1e-4f, c[3]}).faces.size(), 2u) << "a corner with two coordinates";
+  EXPECT_EQ(with(first, {c[0], c[2], c[3] + 1e-4f}).faces.size(), 2u) << "bent at the diagonal";
+  EXPECT_EQ(with({}, {}).faces.size(), 1u) << "one colour";
+}
+
 TEST(JoinTriangles, LongestEdgeFirst) {
   // A strip of two squares, with an edge of length 1 between triangles of different squares.
   Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}},

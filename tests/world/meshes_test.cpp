@@ -139,10 +139,10 @@ TEST_F(Meshes, MaterialsOfObj) {
   write("two parts.mtl",
         "newmtl dark red\nKd 0.5 0 0\nnewmtl grey\nKd 0.25\nnewmtl textured\nmap_Kd a.png\nKd 1 1 1\n"
         "newmtl bright\nKd 2 0 -1\nnewmtl odd\nKd spectral a.rfl\n");
-  const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nmtllib two parts.mtl\n";
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nmtllib two parts.mtl\nvt 0 0\n";
   const Triangles found = read_triangles(file(
       "a.obj", corners +
-                   "f 1 2 3\nusemtl dark red\nf 1 2 3 4\nusemtl grey\nf 1 2 3\nusemtl textured\nf 1 2 3\n"
+                   "f 1 2 3\nusemtl dark red\nf 1 2 3 4\nusemtl grey\nf 1 2 3\nusemtl textured\nf 1/1 2/1 3/1\n"
                    "usemtl dark red\nf 1 2 3\nusemtl bright\nf 1 2 3\nusemtl odd\nf 1 2 3\nusemtl none\nf 1 2 3\n"));
   EXPECT_EQ(found.material_of, (std::vector<std::uint32_t>{kNoMaterial, 0, 0, 1, 2, 0, 3, 4, kNoMaterial}));
   ASSERT_EQ(found.materials.size(), 5u);

@@ -55,7 +55,25 @@ bool TriangleBuilder::is_convex(std::span<const std::uint64_t> corners) const {
   return true;
 }
 
-void TriangleBuilder::add_face(std::span<const std::uint64_t> corners, const MeshPlace& at) {
+/// @param corners number of those of a face
+void TriangleBuilder::add_coordinates(std::span<const glm::vec2> coordinates, std::size_t corners) {
+  if (material_ == kNoMaterial || out_.texture_of[material_].texture == kNoTexture) return;
+  const auto is_good = [](glm::vec2 c) {
+    return std::abs(c.x) <= kMostTextureCoordinate && std::abs(c.y) <= kMostTextureCoordinate;
+  };
+  const bool good = coordinates.size() == corners && std::ranges::all_of(coordinates, is_good);
+  if (!good && !std::exchange(lacking_, true))
+    add_note(
+        "faces of textured materials lack texture coordinates, or have some that are not finite or beyond 1e6; "
+        "they have the colour at the top left of the texture");
+  out_.coordinates.resize(out_.corners.size() - 3 * (corners - 2));  // faces before this one
+  const auto at = [&](std::size_t i) { return good ? coordinates[i] : glm::vec2{}; };
+  for (std::size_t i = 1; i + 1 < corners; ++i)
+    out_.coordinates.insert(out_.coordinates.end(), {at(0), at(i), at(i + 1)});
+}
+
+void TriangleBuilder::add_face(std::span<const std::uint64_t> corners, const MeshPlace& at,
+                               std::span<const glm::vec2> coordinates) {
   if (corners.size() < 3) fail(at, "a face has fewer than three corners");
   for (const std::uint64_t corner : corners)
     if (corner >= vertices()) fail(at, fmt::format("a face refers to vertex {} of {} so far", corner + 1, vertices()));
@@ -67,12 +85,18 @@ void TriangleBuilder::add_face(std::span<const std::uint64_t> corners, const Mes
   const auto row = [&](std::size_t i) { return static_cast<std::uint32_t>(corners[i]); };
   for (std::size_t i = 1; i + 1 < corners.size(); ++i)
     out_.corners.insert(out_.corners.end(), {row(0), row(i), row(i + 1)});
+  add_coordinates(coordinates, corners.size());
   if (material_ == kNoMaterial) return;
   out_.material_of.resize(out_.corners.size() / 3 - (corners.size() - 2), kNoMaterial);  // faces before this one
   out_.material_of.resize(out_.corners.size() / 3, material_);
 }
 
-std::uint32_t TriangleBuilder::add_material(const std::string& name, Material material) {
+std::uint32_t TriangleBuilder::add_texture(TextureSource texture) {
+  out_.textures.push_back(std::move(texture));
+  return static_cast<std::uint32_t>(out_.textures.size() - 1);
+}
+
+std::uint32_t TriangleBuilder::add_material(const std::string& name, Material material, const TextureUse& texture) {
   if (const glm::dvec3& c = material.color; !std::isfinite(c.x + c.y + c.z))
     fail(fmt::format("material '{}' has the colour ({:g}, {:g}, {:g}); expected numbers from 0 to 1", name, c.x, c.y,
                      c.z));
@@ -88,6 +112,7 @@ std::uint32_t TriangleBuilder::add_material(const std::string& name, Material ma
   if (std::exchange(clamped_, clamped) != clamped)
     add_note(fmt::format("the colour of material '{}' is not within 0 to 1; such colours are clamped", name));
   out_.materials.push_back(material);
+  out_.texture_of.push_back(texture);
   return static_cast<std::uint32_t>(out_.materials.size() - 1);
 }
 
@@ -95,14 +120,22 @@ void TriangleBuilder::add(const Triangles& part) {
   expect((out_.corners.size() + part.corners.size()) / 3);
   const std::uint64_t first = vertices();
   const auto first_material = static_cast<std::uint32_t>(out_.materials.size());
-  for (std::size_t i = 0; i < part.materials.size(); ++i) add_material(std::to_string(i + 1), part.materials[i]);
+  const auto first_texture = static_cast<std::uint32_t>(out_.textures.size());
+  out_.textures.insert(out_.textures.end(), part.textures.begin(), part.textures.end());
+  for (std::size_t i = 0; i < part.materials.size(); ++i) {
+    TextureUse use = part.texture_of.empty() ? TextureUse{} : part.texture_of[i];
+    if (use.texture != kNoTexture) use.texture += first_texture;
+    add_material(std::to_string(i + 1), part.materials[i], use);
+  }
   std::uint64_t number = 0;
   for (const glm::dvec3& p : part.vertices) add_vertex(p, {"vertex", ++number});
   for (std::size_t i = 0; i + 2 < part.corners.size(); i += 3) {
     const auto row = [&](std::size_t k) { return first + part.corners[i + k]; };
     const std::uint32_t material = part.material_of.empty() ? kNoMaterial : part.material_of[i / 3];
     material_ = material == kNoMaterial ? material : first_material + material;
-    add_face(std::array{row(0), row(1), row(2)}, {"triangle", i / 3 + 1});
+    const auto coordinates = std::span(part.coordinates).subspan(part.coordinates.empty() ? 0 : i);
+    add_face(std::array{row(0), row(1), row(2)}, {"triangle", i / 3 + 1},
+             coordinates.first(std::min<std::size_t>(3, coordinates.size())));
   }
   material_ = kNoMaterial;
   out_.notes.insert(out_.notes.end(), part.notes.begin(), part.notes.end());
@@ -122,6 +155,10 @@ Triangles TriangleBuilder::finish() {
     out_.materials.clear();
   else
     out_.material_of.resize(out_.corners.size() / 3, kNoMaterial);
+  if (out_.coordinates.empty())
+    out_.textures.clear(), out_.texture_of.clear();
+  else
+    out_.coordinates.resize(out_.corners.size());
   return std::move(out_);
 }
 

@@ -9,6 +9,7 @@
 #include "world/foreign_world.h"
 #include "world/free_space.h"
 #include "world/keys.h"
+#include "world/meshes/textures.h"
 #include "world/outlines.h"
 #include "world/overlaps.h"
 #include "world/ros_map.h"
@@ -163,6 +164,7 @@ World build_world(const std::string& file, const std::string& content, const Loa
   check_stop_lines(b);
 
   if (!options.leave_outlines) read_unread(b.world);
+  read_textures(b.world, b.triangles);
   update_extent_and_hash(b.world);
   warn_of_nothing(b, document.root);
   if (b.world.road_resolution > 0.0 && !b.world.ramps.empty())
