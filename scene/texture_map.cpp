@@ -29,12 +29,4 @@ TextureMap seen_texture(const SceneMesh& mesh, std::uint32_t face) {
   return {.point = {}, .c = own.at(mesh.X_FS.p), .du = R_SF * own.du, .dv = R_SF * own.dv};
 }
 
-glm::vec3 texture_spread(const TextureMap& map, const glm::dvec3& normal, const glm::dvec3& d, double range) {
-  // A direction d + e, with e across d, meets the plane at the place range (d + e - d (n . e) / (n . d)).
-  const double sine = glm::dot(normal, d);
-  const glm::dvec3 gu = range * (map.du - normal * (glm::dot(map.du, d) / sine));
-  const glm::dvec3 gv = range * (map.dv - normal * (glm::dot(map.dv, d) / sine));
-  return glm::vec3(glm::dvec3(glm::dot(gu, gu), glm::dot(gu, gv), glm::dot(gv, gv)));
-}
-
 }  // namespace sf::scene

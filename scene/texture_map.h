@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/ext/vector_double2.hpp>
 #include <glm/ext/vector_float3.hpp>
+#include <glm/geometric.hpp>
 
 #include "scene/decision.h"
 #include "scene/mesh.h"
@@ -28,6 +29,11 @@ TextureMap seen_texture(const SceneMesh& mesh, std::uint32_t face);
 /// Returns products of the gradients gu, gv of the texture coordinates with respect to the direction of a beam that
 /// meets a face: (gu . gu, gu . gv, gv . gv) [1/rad^2]. They grow beyond all bounds as the beam meets it edge-on.
 /// @param map of seen_texture  @param normal unit vector of the face  @param d unit vector  @param range [m]
-glm::vec3 texture_spread(const TextureMap& map, const glm::dvec3& normal, const glm::dvec3& d, double range);
+inline glm::vec3 texture_spread(const TextureMap& map, const glm::dvec3& normal, const glm::dvec3& d, double range) {
+  // A direction d + e, with e across d, meets the plane at the place range (d + e - d (n . e) / (n . d)).
+  const glm::dvec3 tilt = normal * (range / glm::dot(normal, d));
+  const glm::dvec3 gu = range * map.du - glm::dot(map.du, d) * tilt, gv = range * map.dv - glm::dot(map.dv, d) * tilt;
+  return glm::vec3(glm::dvec3(glm::dot(gu, gu), glm::dot(gu, gv), glm::dot(gv, gv)));
+}
 
 }  // namespace sf::scene

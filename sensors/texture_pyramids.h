@@ -1,6 +1,7 @@
 #pragma once
 // Textures with smaller versions of each (mip maps: Williams, 1983), filtered in linear light.
 
+#include <array>
 #include <cstdint>
 #include <glm/ext/vector_double2.hpp>
 #include <glm/ext/vector_float3.hpp>
@@ -24,18 +25,17 @@ class TexturePyramids {
   glm::vec3 color_at(const world::TextureUse& use, glm::dvec2 at, const glm::vec3& spread) const;
 
  private:
+  using Lanes = float __attribute__((vector_size(16)));  ///< a texel, in one vector instruction each
+  using Texel = std::array<std::uint16_t, 4>;            ///< linear red, green and blue, of which 65535 is 1; and 0
   struct Level {
     std::uint32_t width = 0, height = 0;  ///< [px]
-    std::vector<std::uint32_t> texels;    ///< 0xRRGGBB in sRGB, row by row from the top
+    std::vector<Texel> texels;            ///< row by row from the top
   };
-  glm::vec3 linear(std::uint32_t texel) const {
-    return {linear_[texel >> 16], linear_[texel >> 8 & 255], linear_[texel & 255]};
-  }
-  Level half_of(const Level& level) const;
-  glm::vec3 between_texels(const Level& level, const world::TextureUse& use, glm::dvec2 at) const;
+  static Level half_of(const Level& level);
+  /// @param at within the picture, from (0, 0) to (1, 1)
+  static Lanes between_texels(const Level& level, const world::TextureUse& use, glm::dvec2 at);
 
   std::vector<std::vector<Level>> textures_;  ///< each with the picture first, and one texel last
-  float linear_[256] = {};                    ///< light of 8-bit values
 };
 
 }  // namespace sf::sensors

@@ -73,7 +73,7 @@ TEST(TexturePyramids, AgreeWithSumsInDouble) {
       if (i % 3 == 0) at = glm::round(2.0 * at * glm::dvec2(width, height)) / (2.0 * glm::dvec2(width, height));
       const TextureUse use{0, static_cast<TextureWrap>(i % 3), static_cast<TextureWrap>(i / 3 % 3)};
       const glm::dvec3 found(pyramids.color_at(use, at, {})), expected = between(texture, use, at);
-      EXPECT_LT(glm::distance(found, expected), 1e-5) << width << " " << at.x << " " << at.y << " " << i;
+      EXPECT_LT(glm::distance(found, expected), 2e-5) << width << " " << at.x << " " << at.y << " " << i;
     }
   }
 }
@@ -94,7 +94,7 @@ TEST(TexturePyramids, LevelsAreMeans) {
     };
     for (const float size : {1e3f, 1e30f, INFINITY, NAN}) {
       const glm::dvec3 found(pyramids.color_at(use, {0.3, 0.4}, {size, 0, size}));
-      EXPECT_LT(glm::distance(found, mean(0, 0, width, height)), 0.02) << "levels are rounded to 8 bits of sRGB";
+      EXPECT_LT(glm::distance(found, mean(0, 0, width, height)), 1e-3) << "levels are rounded to 16 bits";
     }
     if (width != 16) continue;
     const glm::vec3 four{4.0f / (16 * 16), 0, 1.0f / (8 * 8)};  // 2 texels wide, 1 high
