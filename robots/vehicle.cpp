@@ -12,6 +12,7 @@ namespace sf::robots {
 namespace {
 
 constexpr double kHoldRate = 100.0;  // [rad/s] of a standing car on the hold of its tyres
+constexpr double kContacts = 12.0;   // wheels and corners
 constexpr double kResponse = 0.25;   // [s] in which the drive-line corrects speeds
 
 }  // namespace
@@ -51,6 +52,7 @@ Vehicle::Vehicle(const VehicleModel& model, const world::Mover& mover)
   }
   const double tilt_inertia = std::min(model_.roll_inertia, model_.pitch_inertia);
   contact_mass_ = 0.25 / (1.0 / car.mass + car.height * car.height / tilt_inertia + farthest / car.inertia);
+  most_load_ = std::max(4.0 / kContacts * contact_mass_ / kVehicleStep, car.mass * kGravity);
   hold_ = 0.25 * car.mass * kHoldRate * kHoldRate;
   const Friction& f = car.friction;
   peak_ = f.at(base::log(f.c1 * f.c2 / f.c3) / f.c2);

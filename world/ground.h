@@ -22,8 +22,10 @@ class Ground {
   bool has_terrain() const { return terrain_.has_value(); }
   /// Returns the height [m] of the highest road at `p` that is at most `most` [m] high, or of the ground below.
   double height(glm::dvec2 p, double most) const { return at(p, most).z; }
-  /// Same, with the slope there. Edges of roads are steps.
-  GroundPoint at(glm::dvec2 p, double most) const;
+  /// Same, with the slope there. Edges of roads and of the terrain are steps.
+  /// @param radius [m] >= 0; > 0: the height is that of the lowest point of a wheel that stands at `p`, and rolls over
+  /// edges at most `most` high as a ball does
+  GroundPoint at(glm::dvec2 p, double most, double radius = 0.0) const;
   /// Returns the z [m] of a body after a move. On a surface (within 1 cm) it stays on it, and above a surface it keeps
   /// its height above it. It climbs a rise of a road of at most kMostStep plus kMostSlope times the length of the move,
   /// passes under higher roads, drops from an edge within the move, and follows terrain of any slope.
@@ -45,7 +47,7 @@ class Ground {
   static constexpr double kOverlap = 0.05;
 
  private:
-  GroundPoint base_at(glm::dvec2 p) const;
+  GroundPoint base_at(glm::dvec2 p, double most = 0.0, double radius = 0.0) const;
 
   std::span<const Ramp> ramps_;
   std::optional<TerrainSurface> terrain_;
