@@ -52,7 +52,8 @@ Vehicle::Contact Vehicle::contact_of(const VehicleBody& body, const glm::dmat3& 
     before = gap;
     gap = std::clamp(gap, -rest.compression - model_.travel - radius, rest.compression);
     const glm::dvec3 end = at - gap * up;
-    const world::GroundPoint below = ground.at({end.x, end.y}, std::max(at.z, end.z) + 0.5 * radius, radius);
+    const world::GroundPoint below =
+        ground.contact(end, {body.p.x, body.p.y}, std::max(at.z - end.z, 0.0) + 0.5 * radius, radius);
     const glm::dvec3 normal = normal_of(below);
     slant = glm::dot(up, normal);
     if (slant < kLeastSlant) return contact;
@@ -172,7 +173,7 @@ Vehicle::Contact Vehicle::corner_of(const VehicleBody& body, const glm::dmat3& R
                          (corner & 4) != 0 ? box.z : kSill * box.z};
   Contact contact{.p = R * (place - centre_)};
   const glm::dvec3 at = body.p + contact.p;
-  const world::GroundPoint below = ground.at({at.x, at.y}, at.z + 0.5 * model_.car.wheel_radius);
+  const world::GroundPoint below = ground.contact(at, {body.p.x, body.p.y}, 0.5 * model_.car.wheel_radius);
   contact.normal = normal_of(below);
   contact.compression = (below.z - at.z) * contact.normal.z;
   contact.rate = -glm::dot(body.v + glm::cross(body.w, contact.p), contact.normal);

@@ -11,6 +11,8 @@ namespace sf::world {
 
 namespace {
 
+constexpr double kBorderSlope = 1e3;  // of a terrain's border, which is upright
+
 base::BoxTree tree_of(std::span<const Ramp> ramps) {
   std::vector<base::Box> boxes;
   for (const Ramp& ramp : ramps) {
@@ -76,6 +78,22 @@ GroundPoint Ground::at(glm::dvec2 p, double most, double radius) const {
   });
   // A wheel off the road rolls on to it without a step.
   return beyond.z > highest.z + (radius > 0.0 && !on_piece ? 0.0 : kContact) ? beyond : highest;
+}
+
+GroundPoint Ground::contact(const glm::dvec3& p, glm::dvec2 middle, double step, double radius) const {
+  const GroundPoint here = at({p.x, p.y}, p.z + step, radius);
+  if (here.z <= p.z + step || base_at(middle).z > p.z) return here;
+  glm::dvec2 in{p.x, p.y}, out = middle;
+  for (int k = 0; k < 24; ++k) {
+    const glm::dvec2 half = 0.5 * (in + out);
+    (base_at(half).z > p.z ? in : out) = half;
+  }
+  GroundPoint face = base_at(in);
+  if (terrain_->at(in).has_value() != terrain_->at(out).has_value())
+    face.slope = kBorderSlope * glm::normalize(in - terrain_->border(in));
+  if (glm::dot(face.slope, face.slope) < 1.0) return here;
+  face.z = p.z + glm::dot(face.slope, glm::dvec2{p.x, p.y} - in);
+  return face;
 }
 
 double Ground::follow(const base::Pose& from, glm::dvec2 to) const {

@@ -79,6 +79,29 @@ TEST(VehicleGround, CliffsThrowNothing) {
   }
 }
 
+/// Upright borders, and cliffs thinner than the way that a car needs to stop, in front of it and behind.
+TEST(VehicleGround, CliffsStopCars) {
+  const world::Terrain high = plateau(20.0, 20.0);
+  const world::Terrain thin{.X_WT = {10.0, 0.0}, .cell = {0.1, 50.0}, .columns = 401, .rows = 2, .heights = [] {
+                              std::vector<float> heights(802);
+                              for (std::size_t k = 0; k < heights.size(); ++k)
+                                heights[k] = k % 401 > 200 ? 20.0f : 0.0f;
+                              return heights;
+                            }()};
+  for (const auto& [terrain, face] : {std::pair{&high, -10.0}, {&thin, 10.1}}) {
+    const world::Ground ground({}, {terrain, 1});
+    for (const double speed : {5.0, -5.0}) {
+      Drive drive(family_model(), speed, {}, ground);
+      drive.report.X_WM = {face - 6.0, 0.0, 0.0, speed > 0.0 ? 0.0 : M_PI};
+      drive.vehicle.place(drive.report, drive.state);
+      double highest = 0.0;
+      for (int k = 0; k < 30; ++k) highest = std::max(highest, drive.go({speed}, 0.1).X_WM.z);
+      EXPECT_NEAR(drive.report.X_WM.x, face - 2.1, 0.3) << speed << " m/s";
+      EXPECT_LT(highest, 0.3) << speed << " m/s";
+    }
+  }
+}
+
 TEST(VehicleGround, LiesOnItsRoofWhenUpsideDown) {
   const Vehicle vehicle(family_model());
   VehicleBody body = vehicle.body_at({.X_WM = {0.0, 0.0, 1.6}, .tilt = {.roll = 3.0}});

@@ -76,6 +76,19 @@ TEST(Ground, WheelsRollOverTheBorderOfTheTerrain) {
   }
 }
 
+/// Points in a plateau 3 m high, 2 m by 2 m, of a body in front of it.
+TEST(Ground, BodiesMeetTheFacesOfCliffs) {
+  const Terrain terrain{.cell = {2.0, 2.0}, .columns = 2, .rows = 2, .heights = std::vector(4, 3.0f)};
+  const Ground ground({}, {&terrain, 1});
+  const GroundPoint face = ground.contact({-0.8, 0.3, 1.0}, {-5.0, 0.3}, 0.1);
+  EXPECT_NEAR((face.z - 1.0) / glm::length(face.slope), 0.2, 1e-6) << "0.2 m behind the border";
+  EXPECT_NEAR(face.slope.y, 0.0, 1e-3 * face.slope.x);
+  EXPECT_GT(face.slope.x, 100.0) << "it rises away from the body";
+  EXPECT_EQ(ground.contact({-0.8, 0.3, 2.95}, {-5.0, 0.3}, 0.1).z, 3.0) << "a step";
+  EXPECT_EQ(ground.contact({-0.8, 0.3, 1.0}, {0.0, 0.0}, 0.1).z, 3.0) << "of a body in the ground";
+  EXPECT_EQ(ground.contact({-1.2, 0.3, 1.0}, {-5.0, 0.3}, 0.1).z, 0.0) << "in front of it";
+}
+
 TEST(Ground, BodiesClimbRampsInBothDirections) {
   EXPECT_NEAR(drive(-1.0, 0.0, 0.0, 1.0), 0.2, 1e-12);
   EXPECT_EQ(drive(-1.0, 0.1, 0.0, 3.0), 0.4);
