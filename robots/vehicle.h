@@ -142,6 +142,7 @@ class Vehicle final : public Dynamics {
   Contact contact_of(const VehicleBody& body, const glm::dmat3& R, std::size_t wheel, const world::Ground& ground,
                      double dt = 0.0) const;
   glm::dvec2 heading_of(std::size_t wheel, const base::SinCos& steer) const;
+  static constexpr unsigned kCorners = 8;
   static glm::dvec2 hold_rate(const Tyre& tyre, glm::dvec2 deflection, glm::dvec2 slip);
   Tyre tyre_of(const VehicleBody& body, const glm::dmat3& R, std::size_t wheel, const glm::dvec2& heading,
                const Contact& contact, double dt) const;

@@ -13,7 +13,6 @@ namespace {
 constexpr double kHoldFade = 0.05;   // [s] in which the hold of a rolling tyre vanishes
 constexpr double kMotorSlack = 0.2;  // [rad/s] by which a skid drive's motor at full torque lags
 constexpr double kSill = 0.3;        // [-] height of the body's lower corners, in that of the box
-constexpr unsigned kCorners = 8;
 constexpr double kCornerFriction = 0.6;
 constexpr int kRounds = 5;
 constexpr double kSameGap = 1e-6;  // [m]
@@ -22,12 +21,6 @@ constexpr double kOutward = 1.0;   // [m/s] at which deep contacts push out of t
 glm::dvec3 normal_of(const world::GroundPoint& ground) {
   if (ground.slope == glm::dvec2{}) return {0.0, 0.0, 1.0};
   return glm::normalize(glm::dvec3{-ground.slope.x, -ground.slope.y, 1.0});
-}
-
-/// Returns the energy [J] of a spring whose force is bounded. @param most [N] >= 0
-double stored(double stiffness, double compression, double most) {
-  const double elastic = std::min(compression, most / stiffness);
-  return 0.5 * stiffness * elastic * elastic + most * (compression - elastic);
 }
 
 }  // namespace
@@ -236,31 +229,6 @@ void Vehicle::step(VehicleBody& body, const VehicleControls& controls, double dt
   const auto& q = body.q;
   const double norm = 1.0 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   body.q = {norm * q.w, norm * q.x, norm * q.y, norm * q.z};
-}
-
-double Vehicle::load(const VehicleBody& body, std::size_t wheel, const world::Ground& ground) const {
-  return contact_of(body, base::rotation_of(body.q), wheel, ground).load;
-}
-
-double Vehicle::energy(const VehicleBody& body, const world::Ground& ground) const {
-  const CarModel& car = model_.car;
-  const glm::dmat3 R = base::rotation_of(body.q);
-  const glm::dvec3 w = glm::transpose(R) * body.w, inertia{model_.roll_inertia, model_.pitch_inertia, car.inertia};
-  double sum = car.mass * (kGravity * body.p.z + 0.5 * glm::dot(body.v, body.v)) + 0.5 * glm::dot(w, inertia * w);
-  for (std::size_t k = 0; k < kWheels; ++k) {
-    const Contact wheel = contact_of(body, R, k, ground);
-    const double x = std::max(0.0, wheel.compression), most = most_load_ * glm::dot(R[2], wheel.normal);
-    const double bump = std::max(0.0, x - rest_[k].compression - model_.travel);
-    const double strut = std::min(most, model_.spring * (x - bump));
-    sum += 0.5 * car.wheel_inertia * body.spin[k] * body.spin[k] + stored(model_.spring, x - bump, most) +
-           strut * bump + stored((1.0 + kBumpStiffness) * model_.spring, bump, most - strut) +
-           0.5 * hold_ * glm::dot(body.hold[k], body.hold[k]);
-  }
-  for (unsigned k = 0; k < kCorners; ++k) {
-    const double depth = std::max(0.0, corner_of(body, R, k, ground).compression);
-    sum += stored(kBumpStiffness * model_.spring, depth, most_load_);
-  }
-  return sum;
 }
 
 }  // namespace sf::robots

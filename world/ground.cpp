@@ -82,15 +82,19 @@ GroundPoint Ground::at(glm::dvec2 p, double most, double radius) const {
 
 GroundPoint Ground::contact(const glm::dvec3& p, glm::dvec2 middle, double step, double radius) const {
   const GroundPoint here = at({p.x, p.y}, p.z + step, radius);
-  if (here.z <= p.z + step || base_at(middle).z > p.z) return here;
+  if (here.z <= p.z + step) return here;
   glm::dvec2 in{p.x, p.y}, out = middle;
+  if (base_at(out).z > p.z) out = 2.0 * in - middle;
+  if (base_at(out).z > p.z) return here;
   for (int k = 0; k < 24; ++k) {
     const glm::dvec2 half = 0.5 * (in + out);
     (base_at(half).z > p.z ? in : out) = half;
   }
   GroundPoint face = base_at(in);
-  if (terrain_->at(in).has_value() != terrain_->at(out).has_value())
-    face.slope = kBorderSlope * glm::normalize(in - terrain_->border(in));
+  if (terrain_->at(in).has_value() != terrain_->at(out).has_value()) {
+    const glm::dvec2 up = in - terrain_->border(in) + terrain_->border(out) - out;
+    if (const double length = glm::length(up); length > 0.0) face.slope = kBorderSlope / length * up;
+  }
   if (glm::dot(face.slope, face.slope) < 1.0) return here;
   face.z = p.z + glm::dot(face.slope, glm::dvec2{p.x, p.y} - in);
   return face;

@@ -27,7 +27,8 @@ class Ground {
   /// edges at most `most` high as a ball does
   GroundPoint at(glm::dvec2 p, double most, double radius = 0.0) const;
   /// Returns the surface that the point `p` of a body meets: as `at` for heights up to `step` [m] above it. In terrain
-  /// higher than that, it is the face of the cliff or border between `p` and the body's `middle`, extended to `p`.
+  /// higher than that, it is the face of the cliff or border between `p` and the body's `middle`, or as far beyond `p`,
+  /// extended to `p` as a plane; `at` without one, as in a body placed in the ground.
   GroundPoint contact(const glm::dvec3& p, glm::dvec2 middle, double step, double radius = 0.0) const;
   /// Returns the z [m] of a body after a move. On a surface (within 1 cm) it stays on it, and above a surface it keeps
   /// its height above it. It climbs a rise of a road of at most kMostStep plus kMostSlope times the length of the move,

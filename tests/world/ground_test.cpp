@@ -85,7 +85,8 @@ TEST(Ground, BodiesMeetTheFacesOfCliffs) {
   EXPECT_NEAR(face.slope.y, 0.0, 1e-3 * face.slope.x);
   EXPECT_GT(face.slope.x, 100.0) << "it rises away from the body";
   EXPECT_EQ(ground.contact({-0.8, 0.3, 2.95}, {-5.0, 0.3}, 0.1).z, 3.0) << "a step";
-  EXPECT_EQ(ground.contact({-0.8, 0.3, 1.0}, {0.0, 0.0}, 0.1).z, 3.0) << "of a body in the ground";
+  EXPECT_NEAR(ground.contact({-0.8, 0.3, 1.0}, {-0.4, 0.3}, 0.1).slope.x, 1e3, 1.0) << "of a body that leans over it";
+  EXPECT_EQ(ground.contact({-0.8, 0.3, 1.0}, {-0.7, 0.3}, 0.1).z, 3.0) << "of a body in the ground";
   EXPECT_EQ(ground.contact({-1.2, 0.3, 1.0}, {-5.0, 0.3}, 0.1).z, 0.0) << "in front of it";
 }
 
