@@ -12,7 +12,14 @@ namespace sf::robots {
 namespace {
 
 constexpr double kHoldRate = 100.0;  // [rad/s] of a standing car on the hold of its tyres
+constexpr double kContacts = 12.0;   // wheels and corners
 constexpr double kResponse = 0.25;   // [s] in which the drive-line corrects speeds
+
+/// Returns the energy [J] of a spring whose force is bounded. @param most [N] >= 0
+double stored(double stiffness, double compression, double most) {
+  const double elastic = std::min(compression, most / stiffness);
+  return 0.5 * stiffness * elastic * elastic + most * (compression - elastic);
+}
 
 }  // namespace
 
@@ -51,6 +58,7 @@ Vehicle::Vehicle(const VehicleModel& model, const world::Mover& mover)
   }
   const double tilt_inertia = std::min(model_.roll_inertia, model_.pitch_inertia);
   contact_mass_ = 0.25 / (1.0 / car.mass + car.height * car.height / tilt_inertia + farthest / car.inertia);
+  most_load_ = std::max(4.0 / kContacts * contact_mass_ / kVehicleStep, car.mass * kGravity);
   hold_ = 0.25 * car.mass * kHoldRate * kHoldRate;
   const Friction& f = car.friction;
   peak_ = f.at(base::log(f.c1 * f.c2 / f.c3) / f.c2);
@@ -154,6 +162,31 @@ VehicleControls Vehicle::controls_for(const VehicleBody& body, const Goal& goal)
     controls.drive = std::clamp(force * r, -most, most);
   }
   return controls;
+}
+
+double Vehicle::load(const VehicleBody& body, std::size_t wheel, const world::Ground& ground) const {
+  return contact_of(body, base::rotation_of(body.q), wheel, ground).load;
+}
+
+double Vehicle::energy(const VehicleBody& body, const world::Ground& ground) const {
+  const CarModel& car = model_.car;
+  const glm::dmat3 R = base::rotation_of(body.q);
+  const glm::dvec3 w = glm::transpose(R) * body.w, inertia{model_.roll_inertia, model_.pitch_inertia, car.inertia};
+  double sum = car.mass * (kGravity * body.p.z + 0.5 * glm::dot(body.v, body.v)) + 0.5 * glm::dot(w, inertia * w);
+  for (std::size_t k = 0; k < kWheels; ++k) {
+    const Contact wheel = contact_of(body, R, k, ground);
+    const double x = std::max(0.0, wheel.compression), most = most_load_ * glm::dot(R[2], wheel.normal);
+    const double bump = std::max(0.0, x - rest_[k].compression - model_.travel);
+    const double strut = std::min(most, model_.spring * (x - bump));
+    sum += 0.5 * car.wheel_inertia * body.spin[k] * body.spin[k] + stored(model_.spring, x - bump, most) +
+           strut * bump + stored((1.0 + kBumpStiffness) * model_.spring, bump, most - strut) +
+           0.5 * hold_ * glm::dot(body.hold[k], body.hold[k]);
+  }
+  for (unsigned k = 0; k < kCorners; ++k) {
+    const double depth = std::max(0.0, corner_of(body, R, k, ground).compression);
+    sum += stored(kBumpStiffness * model_.spring, depth, most_load_);
+  }
+  return sum;
 }
 
 }  // namespace sf::robots

@@ -3,20 +3,21 @@
 // floor.
 //
 // - Suspension: a wheel has no mass of its own (but a spin), moves along the body's z axis and meets the ground below
-//   in one point. Springs are linear, with a bump stop ten times as stiff; there are no anti-roll bars. The ground
-//   pushes along its normal and never pulls. The edge of a road is a step, which loads the spring at once; bump stops
-//   and corners push out of the ground by at most 1 m/s, so that edges and cars placed in the ground throw nothing.
+//   in one point, within its reach. Springs are linear, with a bump stop ten times as stiff; there are no anti-roll
+//   bars. The ground pushes along its normal and never pulls. A wheel rolls over the edge of a road or of the terrain
+//   as a ball does, up to half of its radius high. Bump stops and corners push out of the ground by at most 1 m/s, so
+//   that cars placed in the ground, and steps that corners meet, throw nothing.
 // - Tyres: Burckhardt's friction by combined slip, as in robots/car_dynamics.h. Slip is relative to a speed of at least
 //   kLeastSlipSpeed, so that friction becomes viscous near rest. Below kHoldSpeed, a spring between tyre and ground
 //   holds a braked car on a slope. Both together are limited to the peak friction.
 // - Drive-line: open differentials, a limit of torque and one of power; brakes with a fixed distribution. Steering
 //   follows Ackermann with a lag and a largest rate. A skid drive controls the speed of each wheel instead.
-// - Upside down, the corners of the body's box are springs with friction.
+// - The corners of the body's box are springs with friction, upside down and against steep ground.
 //
 // Neglected: gyroscopic torques of wheels, camber, aligning torques, lift, delays of engine and brakes.
 //
 // Steps are semi-implicit (velocities first), of order one; spins and brakes are implicit. With the drive off, no step
-// raises the sum of kinetic, potential and spring energy, on ground without edges.
+// raises the sum of kinetic, potential and spring energy, on ground without steps.
 
 #include <array>
 #include <cstddef>
@@ -136,11 +137,12 @@ class Vehicle final : public Dynamics {
   struct State;
   void approach(Goal& goal, const base::Twist& command, double dt) const;
   VehicleControls controls_for(const VehicleBody& body, const Goal& goal) const;
-  double bounded(double load, double closing, double dt) const;
+  double bounded(double load, double closing) const;
   // The loads are those of the compressions after `dt`, at constant rates.
   Contact contact_of(const VehicleBody& body, const glm::dmat3& R, std::size_t wheel, const world::Ground& ground,
                      double dt = 0.0) const;
   glm::dvec2 heading_of(std::size_t wheel, const base::SinCos& steer) const;
+  static constexpr unsigned kCorners = 8;
   static glm::dvec2 hold_rate(const Tyre& tyre, glm::dvec2 deflection, glm::dvec2 slip);
   Tyre tyre_of(const VehicleBody& body, const glm::dmat3& R, std::size_t wheel, const glm::dvec2& heading,
                const Contact& contact, double dt) const;
@@ -149,7 +151,7 @@ class Vehicle final : public Dynamics {
                     double hold, double dt) const;
   Tyre add_wheel(VehicleBody& body, const glm::dmat3& R, std::size_t wheel, const VehicleControls& controls,
                  const glm::dvec2& heading, const Contact& contact, double dt, Wrench& sum) const;
-  bool lies(const glm::dmat3& R, const std::array<Contact, kWheels>& wheels) const;
+  bool lies(const VehicleBody& body, const glm::dmat3& R, const world::Ground& ground) const;
   Contact corner_of(const VehicleBody& body, const glm::dmat3& R, unsigned corner, const world::Ground& ground,
                     double dt = 0.0) const;
   void add_corners(const VehicleBody& body, const glm::dmat3& R, const world::Ground& ground, double dt,
@@ -160,6 +162,7 @@ class Vehicle final : public Dynamics {
   glm::dvec3 centre_;                                ///< [m] of gravity, in the mover's frame
   std::array<Rest, kWheels> rest_;
   double contact_mass_;  ///< [kg] least effective mass of the body at a tyre, with all four loaded
+  double most_load_;     ///< [N] of a contact at rest
   double hold_;          ///< [N/m] stiffness of a tyre's hold
   double peak_;          ///< [-] largest friction
 };

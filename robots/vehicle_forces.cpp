@@ -13,10 +13,10 @@ namespace {
 constexpr double kHoldFade = 0.05;   // [s] in which the hold of a rolling tyre vanishes
 constexpr double kMotorSlack = 0.2;  // [rad/s] by which a skid drive's motor at full torque lags
 constexpr double kSill = 0.3;        // [-] height of the body's lower corners, in that of the box
-constexpr unsigned kCorners = 8;
 constexpr double kCornerFriction = 0.6;
-constexpr double kContacts = 12.0;  // wheels and corners
-constexpr double kOutward = 1.0;    // [m/s] at which deep contacts push out of the ground at most
+constexpr int kRounds = 5;
+constexpr double kSameGap = 1e-6;  // [m]
+constexpr double kOutward = 1.0;   // [m/s] at which deep contacts push out of the ground at most
 
 glm::dvec3 normal_of(const world::GroundPoint& ground) {
   if (ground.slope == glm::dvec2{}) return {0.0, 0.0, 1.0};
@@ -26,23 +26,27 @@ glm::dvec3 normal_of(const world::GroundPoint& ground) {
 }  // namespace
 
 /// Limits the load of a contact [N], so that an overlap with an edge of the ground, or with the ground where a car is
-/// placed, does not throw it. Takes energy only. @param closing [m/s] along the normal
-double Vehicle::bounded(double load, double closing, double dt) const {
-  const double most = contact_mass_ * 4.0 / kContacts * std::max(0.0, kOutward + closing);
-  return load * dt > most ? most / dt : load;
+/// placed, does not throw it. Each contact bears at least the weight of the car at rest. Takes energy only.
+/// @param closing [m/s] along the normal
+double Vehicle::bounded(double load, double closing) const {
+  return std::min(load, most_load_ * std::max(0.0, 1.0 + closing / kOutward));
 }
 
 Vehicle::Contact Vehicle::contact_of(const VehicleBody& body, const glm::dmat3& R, std::size_t wheel,
                                      const world::Ground& ground, double dt) const {
   const Rest& rest = rest_[wheel];
   const glm::dvec3 arm = R * rest.p, up = R[2], at = body.p + arm;
-  const double most = at.z + 0.5 * model_.car.wheel_radius;
+  const double radius = model_.car.wheel_radius;
   Contact contact{.p = arm, .normal = up};
-  // Where the strut meets the plane of the ground below its end, and then that below this point.
-  double gap = 0.0, slant = 0.0;
-  for (int round = 0; round < (ground.is_flat() ? 1 : 2); ++round) {
+  // Where the strut meets the plane of the ground below its end, and then that below this point, within its reach: what
+  // is beyond may be the ground of another place.
+  double gap = 0.0, before = HUGE_VAL, slant = 0.0;
+  for (int round = 0; round < (ground.is_flat() ? 1 : kRounds) && std::abs(gap - before) > kSameGap; ++round) {
+    before = gap;
+    gap = std::clamp(gap, -rest.compression - model_.travel - radius, rest.compression);
     const glm::dvec3 end = at - gap * up;
-    const world::GroundPoint below = ground.at({end.x, end.y}, most);
+    const world::GroundPoint below =
+        ground.contact(end, {body.p.x, body.p.y}, std::max(at.z - end.z, 0.0) + 0.5 * radius, radius);
     const glm::dvec3 normal = normal_of(below);
     slant = glm::dot(up, normal);
     if (slant < kLeastSlant) return contact;
@@ -56,9 +60,9 @@ Vehicle::Contact Vehicle::contact_of(const VehicleBody& body, const glm::dmat3& 
   if (next <= 0.0) return contact;
   const double bump = std::max(0.0, next - rest.compression - model_.travel);
   const double closing = contact.rate * slant;
-  const double stop = bounded((1.0 + kBumpStiffness) * model_.spring * bump / slant, closing, dt);
+  const double stop = bounded((1.0 + kBumpStiffness) * model_.spring * bump / slant, closing);
   const double strut = (model_.spring * (next - bump) + model_.damper * contact.rate) / slant;
-  contact.load = bounded(std::max(0.0, strut + stop), std::max(0.0, closing), dt);
+  contact.load = bounded(std::max(0.0, strut + stop), std::max(0.0, closing));
   return contact;
 }
 
@@ -117,8 +121,9 @@ double Vehicle::spin_after(const Tyre& t, std::size_t wheel, const VehicleContro
   const double r = car.wheel_radius, inertia = car.wheel_inertia / dt;
   const double motor = 0.25 * car.drive_limit, gain = model_.skid ? motor / kMotorSlack : 0.0;
   const double push = inertia * spin + r * (t.along * t.forward - hold) + controls.drive * rest_[wheel].drive;
-  double drag = inertia + r * r * t.along, next = (push + gain * controls.spin[wheel]) / (drag + gain);
-  if (const double torque = gain * (controls.spin[wheel] - next); std::abs(torque) > motor) {
+  const double wanted = controls.spin[wheel] + t.pitching;  // motors turn with the body
+  double drag = inertia + r * r * t.along, next = (push + gain * wanted) / (drag + gain);
+  if (const double torque = gain * (wanted - next); std::abs(torque) > motor) {
     next = (push + std::copysign(motor, torque)) / drag;
   } else {
     drag += gain;
@@ -144,15 +149,14 @@ Vehicle::Tyre Vehicle::add_wheel(VehicleBody& body, const glm::dmat3& R, std::si
   return t;
 }
 
-/// Returns whether corners of the body may be on the ground.
-bool Vehicle::lies(const glm::dmat3& R, const std::array<Contact, kWheels>& wheels) const {
+/// Returns whether corners of the body may be on the ground: any height may be next to the wheels but on the floor.
+bool Vehicle::lies(const VehicleBody& body, const glm::dmat3& R, const world::Ground& ground) const {
+  if (!ground.is_flat()) return true;
   const glm::dvec3& box = model_.box;
   const glm::dvec3 sill = R * (glm::dvec3{0.0, 0.0, kSill * box.z} - centre_);
   const double height = std::min(0.0, (1.0 - kSill) * box.z * R[2].z);
-  double highest = wheels[0].p.z;
-  for (const Contact& wheel : wheels) highest = std::max(highest, wheel.p.z);
-  const double lowest = sill.z + height - std::abs(R[0].z) * box.x - std::abs(R[1].z) * box.y;
-  return lowest < highest + 0.5 * kSill * box.z;
+  const double lowest = body.p.z + sill.z + height - std::abs(R[0].z) * box.x - std::abs(R[1].z) * box.y;
+  return lowest < 0.5 * kSill * box.z;
 }
 
 Vehicle::Contact Vehicle::corner_of(const VehicleBody& body, const glm::dmat3& R, unsigned corner,
@@ -162,14 +166,14 @@ Vehicle::Contact Vehicle::corner_of(const VehicleBody& body, const glm::dmat3& R
                          (corner & 4) != 0 ? box.z : kSill * box.z};
   Contact contact{.p = R * (place - centre_)};
   const glm::dvec3 at = body.p + contact.p;
-  const world::GroundPoint below = ground.at({at.x, at.y}, at.z + 0.5 * model_.car.wheel_radius);
+  const world::GroundPoint below = ground.contact(at, {body.p.x, body.p.y}, 0.5 * model_.car.wheel_radius);
   contact.normal = normal_of(below);
   contact.compression = (below.z - at.z) * contact.normal.z;
   contact.rate = -glm::dot(body.v + glm::cross(body.w, contact.p), contact.normal);
   const double next = contact.compression + dt * contact.rate;
   if (next <= 0.0) return contact;
   const double push = kBumpStiffness * model_.spring * next + 4.0 * model_.damper * contact.rate;
-  contact.load = bounded(std::max(0.0, push), contact.rate, dt);
+  contact.load = bounded(std::max(0.0, push), contact.rate);
   return contact;
 }
 
@@ -201,7 +205,7 @@ void Vehicle::step(VehicleBody& body, const VehicleControls& controls, double dt
   std::array<Tyre, kWheels> tyres;
   for (std::size_t k = 0; k < kWheels; ++k)
     tyres[k] = add_wheel(body, R, k, controls, heading_of(k, steered), contacts[k], dt, sum);
-  if (lies(R, contacts)) add_corners(body, R, ground, dt, sum);
+  if (lies(body, R, ground)) add_corners(body, R, ground, dt, sum);
 
   const glm::dvec3 inertia{model_.roll_inertia, model_.pitch_inertia, car.inertia};
   const glm::dvec3 w = glm::transpose(R) * body.w, torque = glm::transpose(R) * sum.torque;
@@ -225,29 +229,6 @@ void Vehicle::step(VehicleBody& body, const VehicleControls& controls, double dt
   const auto& q = body.q;
   const double norm = 1.0 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   body.q = {norm * q.w, norm * q.x, norm * q.y, norm * q.z};
-}
-
-double Vehicle::load(const VehicleBody& body, std::size_t wheel, const world::Ground& ground) const {
-  return contact_of(body, base::rotation_of(body.q), wheel, ground).load;
-}
-
-double Vehicle::energy(const VehicleBody& body, const world::Ground& ground) const {
-  const CarModel& car = model_.car;
-  const glm::dmat3 R = base::rotation_of(body.q);
-  const glm::dvec3 w = glm::transpose(R) * body.w, inertia{model_.roll_inertia, model_.pitch_inertia, car.inertia};
-  double sum = car.mass * (kGravity * body.p.z + 0.5 * glm::dot(body.v, body.v)) + 0.5 * glm::dot(w, inertia * w);
-  for (std::size_t k = 0; k < kWheels; ++k) {
-    const double x = std::max(0.0, contact_of(body, R, k, ground).compression);
-    const double bump = std::max(0.0, x - rest_[k].compression - model_.travel);
-    sum += 0.5 * car.wheel_inertia * body.spin[k] * body.spin[k] +
-           0.5 * model_.spring * (x * x + kBumpStiffness * bump * bump) +
-           0.5 * hold_ * glm::dot(body.hold[k], body.hold[k]);
-  }
-  for (unsigned k = 0; k < kCorners; ++k) {
-    const double depth = std::max(0.0, corner_of(body, R, k, ground).compression);
-    sum += 0.5 * kBumpStiffness * model_.spring * depth * depth;
-  }
-  return sum;
 }
 
 }  // namespace sf::robots

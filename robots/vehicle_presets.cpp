@@ -92,6 +92,23 @@ void require_stable(const VehicleModel& m, const std::string& at) {
                     at, m.spring, m.damper, car.mass, spring, damper));
 }
 
+/// Throws unless the car stands on its springs: without bump stops, leaning by less than they compress.
+void require_standing(const VehicleModel& m, const std::string& at) {
+  const CarModel& car = m.car;
+  if (car.height > m.box.z)
+    throw base::InputError(fmt::format(
+        "{}'dynamics': the centre of gravity is {:g} m high, above the body; expected at most {:g} m: lower "
+        "'height', or raise the model's 'size'",
+        at, car.height, m.box.z));
+  const double side = std::min({car.front_track, car.rear_track, car.wheelbase()});
+  const double least = car.mass * kGravity * std::max(1.5 * car.height / side, 0.5) / side;
+  if (m.spring < least)
+    throw base::InputError(fmt::format(
+        "{}'dynamics': springs of {:g} N/m are too soft for this car of {:g} kg, whose centre of gravity is "
+        "{:g} m high; expected at least {:.3g} N/m: set 'spring', and 'damper' in proportion",
+        at, m.spring, car.mass, car.height, least));
+}
+
 }  // namespace
 
 VehicleModel vehicle_preset(std::string_view name, double wheelbase, double track) {
@@ -139,6 +156,7 @@ VehicleModel vehicle_of(const world::Mover& mover) {
   for (const world::Segment& side : mover.body)
     model.box = glm::max(model.box, glm::dvec3{std::abs(side.a.x), std::abs(side.a.y), side.z_max});
   require_light_wheels(model, choice.at);
+  require_standing(model, choice.at);
   require_stable(model, choice.at);
   return model;
 }

@@ -27,6 +27,22 @@ std::uint32_t row_of(const Scenario& scenario, const world::World& world, const 
                                      base::suggest(robot, names, "expected one of its movers")));
 }
 
+namespace {
+
+void set_plant(const Scenario& scenario, world::World& world) {
+  for (world::Mover& mover : world.movers) {
+    if (*scenario.plant == Plant::thesis && !mover.dynamics.name.empty())
+      throw base::InputError(scenario.file, 0,
+                             fmt::format("the plant \"thesis\" is the driver of the iRobot Create (0.5 m/s), but '{}' "
+                                         "of {} has 'dynamics'; expected \"ideal\"",
+                                         mover.name, scenario.world));
+    mover.actuator_model =
+        *scenario.plant == Plant::thesis ? world::ActuatorModel::player_create : world::ActuatorModel::direct;
+  }
+}
+
+}  // namespace
+
 world::World world_of(const Scenario& scenario) {
   return world_of(scenario, {.controllers = control::controller_names,
                              .model_controllers = control::model_controller_names,
@@ -43,10 +59,7 @@ world::World world_of(const Scenario& scenario, const world::LoadOptions& load) 
   if (scenario.fleet.robots > 0) spawn_fleet(scenario, world);
   world::draw_variations(world, scenario.seed);
   if (scenario.tick > 0.0) world.interval = scenario.tick;
-  if (scenario.plant)
-    for (world::Mover& mover : world.movers)
-      mover.actuator_model =
-          *scenario.plant == Plant::thesis ? world::ActuatorModel::player_create : world::ActuatorModel::direct;
+  if (scenario.plant) set_plant(scenario, world);
   for (const RobotSetup& setup : scenario.robot_setups) {
     world::Mover& mover = world.movers[row_of(scenario, world, setup.name, setup.line)];
     if (mover.is_tag && setup.actor && setup.actor->controller.name.empty()) mover.controller.clear();

@@ -22,8 +22,14 @@ class Ground {
   bool has_terrain() const { return terrain_.has_value(); }
   /// Returns the height [m] of the highest road at `p` that is at most `most` [m] high, or of the ground below.
   double height(glm::dvec2 p, double most) const { return at(p, most).z; }
-  /// Same, with the slope there. Edges of roads are steps.
-  GroundPoint at(glm::dvec2 p, double most) const;
+  /// Same, with the slope there. Edges of roads and of the terrain are steps.
+  /// @param radius [m] >= 0; > 0: the height is that of the lowest point of a wheel that stands at `p`, and rolls over
+  /// edges at most `most` high as a ball does
+  GroundPoint at(glm::dvec2 p, double most, double radius = 0.0) const;
+  /// Returns the surface that the point `p` of a body meets: as `at` for heights up to `step` [m] above it. In terrain
+  /// higher than that, it is the face of the cliff or border between `p` and the body's `middle`, or as far beyond `p`,
+  /// extended to `p` as a plane; `at` without one, as in a body placed in the ground.
+  GroundPoint contact(const glm::dvec3& p, glm::dvec2 middle, double step, double radius = 0.0) const;
   /// Returns the z [m] of a body after a move. On a surface (within 1 cm) it stays on it, and above a surface it keeps
   /// its height above it. It climbs a rise of a road of at most kMostStep plus kMostSlope times the length of the move,
   /// passes under higher roads, drops from an edge within the move, and follows terrain of any slope.
@@ -45,7 +51,7 @@ class Ground {
   static constexpr double kOverlap = 0.05;
 
  private:
-  GroundPoint base_at(glm::dvec2 p) const;
+  GroundPoint base_at(glm::dvec2 p, double most = 0.0, double radius = 0.0) const;
 
   std::span<const Ramp> ramps_;
   std::optional<TerrainSurface> terrain_;

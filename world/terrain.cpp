@@ -96,11 +96,28 @@ std::array<glm::dvec2, 4> outline_of(const Terrain& terrain) {
 TerrainSurface::TerrainSurface(const Terrain& terrain)
     : terrain_(terrain), X_FW_(inverse(corner_of(terrain))), turn_(base::sin_cos(X_FW_.yaw)) {}
 
+glm::dvec2 TerrainSurface::in_frame(glm::dvec2 p) const {
+  const auto [s, c] = turn_;
+  return glm::dvec2{X_FW_.x, X_FW_.y} + glm::dvec2{c * p.x - s * p.y, s * p.x + c * p.y};
+}
+
+glm::dvec2 TerrainSurface::border(glm::dvec2 p) const {
+  const glm::dvec2 size = terrain_.cell * glm::dvec2(terrain_.columns - 1, terrain_.rows - 1), at = in_frame(p);
+  glm::dvec2 nearest = glm::clamp(at, glm::dvec2{}, size);
+  if (nearest == at) {
+    const glm::dvec2 side{at.x < 0.5 * size.x ? 0.0 : size.x, at.y < 0.5 * size.y ? 0.0 : size.y};
+    const glm::dvec2 away = glm::abs(side - at);
+    (away.x < away.y ? nearest.x : nearest.y) = away.x < away.y ? side.x : side.y;
+  }
+  const auto [s, c] = turn_;
+  const glm::dvec2 way = nearest - at;
+  return p + glm::dvec2{c * way.x + s * way.y, c * way.y - s * way.x};
+}
+
 std::optional<GroundPoint> TerrainSurface::at(glm::dvec2 p) const {
   const Terrain& terrain = terrain_;
   const auto [s, c] = turn_;
-  const glm::dvec2 at =
-      (glm::dvec2{X_FW_.x, X_FW_.y} + glm::dvec2{c * p.x - s * p.y, s * p.x + c * p.y}) / terrain.cell;
+  const glm::dvec2 at = in_frame(p) / terrain.cell;
   if (!(at.x >= 0.0 && at.y >= 0.0 && at.x <= terrain.columns - 1.0 && at.y <= terrain.rows - 1.0)) return {};
   const auto i = std::min(static_cast<std::uint32_t>(at.x), terrain.columns - 2);
   const auto j = std::min(static_cast<std::uint32_t>(at.y), terrain.rows - 2);

@@ -52,8 +52,12 @@ class TerrainSurface {
   explicit TerrainSurface(const Terrain& terrain);
   /// Returns the surface at `p` in the world; nullopt outside.
   std::optional<GroundPoint> at(glm::dvec2 p) const;
+  /// Returns the point of the rectangle's border next to `p`, in the world; within rounding errors.
+  glm::dvec2 border(glm::dvec2 p) const;
 
  private:
+  glm::dvec2 in_frame(glm::dvec2 p) const;
+
   const Terrain& terrain_;
   Pose X_FW_;
   base::SinCos turn_;  ///< of X_FW_

@@ -122,6 +122,10 @@ TEST(ScenarioFile, ThePlantSetsTheActuatorModelOfEveryMover) {
   EXPECT_EQ(world_of(parse_text("")).movers[0].actuator_model, world::ActuatorModel::direct);
   EXPECT_EQ(world_of(parse_text("plant = \"thesis\"")).movers[0].actuator_model, world::ActuatorModel::player_create);
   EXPECT_EQ(world_of(parse_text("plant = \"ideal\"")).movers[0].actuator_model, world::ActuatorModel::direct);
+  Scenario cars = parse_scenario(kFile, "world = \"../worlds/vesim/vesim.world\"\nplant = \"thesis\"\n");
+  expect_in("has 'dynamics'; expected \"ideal\"", refusal_of([&] { world_of(cars); }));
+  cars.plant = Plant::ideal;
+  EXPECT_NO_THROW(world_of(cars));
 }
 
 TEST(ScenarioFile, LinksHaveTheScenariosSeed) {

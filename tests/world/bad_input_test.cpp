@@ -71,6 +71,8 @@ const std::vector<Bad>& corpus() {
       {"dynamics with a word", "position( dynamics \"car fast\" )", 1, "'fast' in 'dynamics': expected a setting"},
       {"dynamics with a setting twice", "position( dynamics \"car mass=1 mass=2\" )", 1, "gives 'mass' twice"},
       {"dynamics of a tag", "model( name \"tag1\"\n dynamics \"car\" )", 2, "is not a robot"},
+      {"dynamics under the Create's driver", "position( command_law \"player_create\"\n dynamics \"car\" )", 2,
+       "leave it or 'dynamics' out"},
       {"dynamics that vary", "position( random_slip 0.1 dynamics \"car\" )", 1, "leave 'random_slip'"},
       {"light without a plan", "\nlight( )", 2, "a light requires 'phases'"},
       {"light that lacks a phase", "light( phases 2\n phase[0] [\"red\" 1] )", 1, "'phase[1]' is missing"},

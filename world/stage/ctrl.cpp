@@ -74,6 +74,11 @@ void read_dynamics(BuildState& b, const Entity& entity, Mover& mover) {
   if (mover.is_tag) refuse(fmt::format("'{}' is not a robot; expected 'dynamics' in a robot", mover.name));
   if (property->values.size() > 1 || words.empty() || (words[0] != "car" && !base::names_a_plugin(words[0])))
     refuse("'dynamics' expects one text: \"car\" or a plug-in's file (./libmine.so), and settings KEY=VALUE");
+  if (mover.actuator_model == ActuatorModel::player_create)
+    refuse(
+        fmt::format("'{}' has command_law \"player_create\", which halves its commands to at most 0.5 m/s as the "
+                    "driver of a Create; leave it or 'dynamics' out",
+                    mover.name));
   const std::string& file = b.context.document.files[property->at.file];
   mover.dynamics = {words[0] == "car" ? "car" : (std::filesystem::path(file).parent_path() / words[0]).string(),
                     {},
