@@ -12,7 +12,8 @@ namespace sf::scene {
 
 /// Returns the sides of all segments that lasers see, and for those of closed outlines of a solid
 /// (Segment::solid_left) its top and bottom. Segments without a height (z_min >= z_max) have no surface.
-/// @param segments in the order of the outlines, forward or backward, each outline closed by its last segment
+/// @param segments in the order of the outlines, forward or backward, each outline closed by its last segment; those of
+/// a picture (world/bitmap.h) in any order
 /// @param on_floor leaves out horizontal faces at z = 0, which coincide with the floor
 Mesh mesh_of(std::span<const world::Segment> segments, bool on_floor = false);
 

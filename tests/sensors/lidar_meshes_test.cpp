@@ -67,6 +67,28 @@ TEST_F(LidarMeshes, ABoxIsABox) {
   }
 }
 
+/// So is a picture of a box, seen from above too: turned, on a robot, or as a ROS map.
+TEST_F(LidarMeshes, APictureIsABox) {
+  write("box.pbm", "P1\n4 4\n0000\n0110\n0110\n0000\n");
+  write("box.pgm", "P2 2 2 255 0 0 0 0\n");
+  write("map.yaml",
+        "image: box.pgm\nresolution: 1.0\norigin: [3, -1, 0.3]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n");
+  const base::Pose map = base::compose({3.0, -1.0, 0.0, 0.3}, {1.0, 1.0, 0.0, 0.0});
+  const auto scene = [&](const std::string& picture, const std::string& third) {
+    return world_of("model( pose [1 3 0.5 25] size [1 2 0.8] " + picture + " )\n" +
+                    "define robot position( size [0.4 0.3 0.2] " + picture + " )\n" + third +
+                    "position( name \"r1\" lidar( channels 40 fov_v [-85 5] columns 180 range [0 20] "
+                    "pose [0 0 3 0] size [0 0 0] ) )\nrobot( pose [1.5 -1 0.2 50] )\n");
+  };
+  const world::World pictures = scene("bitmap \"" + path("box.pbm") + "\"", "include \"" + path("map.yaml") + "\"\n"),
+                     solids = scene("", fmt::format("model( pose [{} {} 0 {}] size [2 2 2] )\n", map.x, map.y,
+                                                    map.yaw * 180.0 / M_PI));
+  farm::Farm mine(pictures, host_device(), {.noise = false, .threads = 1});
+  farm::Farm theirs(solids, host_device(), {.noise = false, .threads = 1});
+  const base::ReadingBlock a = sense(mine, pictures), b = sense(theirs, solids);
+  for (std::size_t i = 0; i < a.values.size(); ++i) ASSERT_NEAR(a.values[i], b.values[i], 1e-12) << i;
+}
+
 /// Intensities are those of each face's material, where its model states no reflectance: in exact scans, by the
 /// reference and among simplified meshes. Lidars without intensities build no table of materials.
 TEST_F(LidarMeshes, MaterialsReflect) {
