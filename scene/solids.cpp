@@ -240,13 +240,17 @@ Mesh holed_floor(const world::World& world, double reach) {
 
 Mesh mesh_of(const world::Mesh& triangles, std::vector<std::uint32_t> materials,
              std::span<const glm::vec2> coordinates) {
-  Mesh mesh{triangles.vertices, {}, {}, std::move(materials), {}};
+  Mesh mesh{triangles.vertices, {}, {}, {}, {}};
   const std::vector<std::uint32_t>& corners = triangles.corners;
   mesh.faces.reserve(corners.size() / 3);
-  for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+    const glm::dvec3 p = mesh.vertices[corners[i]];
+    const glm::dvec3 normal = glm::cross(mesh.vertices[corners[i + 1]] - p, mesh.vertices[corners[i + 2]] - p);
+    if (!(glm::dot(normal, normal) > 0.0)) continue;
     mesh.faces.push_back({corners[i], corners[i + 1], corners[i + 2], corners[i + 2]});
-  for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3)
-    mesh.coordinates.push_back({coordinates[i], coordinates[i + 1], coordinates[i + 2]});
+    if (!materials.empty()) mesh.materials.push_back(materials[i / 3]);
+    if (!coordinates.empty()) mesh.coordinates.push_back({coordinates[i], coordinates[i + 1], coordinates[i + 2]});
+  }
   return join_triangles(std::move(mesh));
 }
 

@@ -27,7 +27,8 @@ base::Box box_of_holes(const world::World& world);
 /// owners.
 Mesh holed_floor(const world::World& world, double reach);
 
-/// Returns the surface of a file's mesh, without owners. @param materials per triangle, as Mesh::materials
+/// Returns the surface of a file's mesh, without owners and triangles whose area is 0, as scaling may leave some.
+/// @param materials per triangle, as Mesh::materials
 /// @param coordinates as world::MeshTextures::corners, or empty
 Mesh mesh_of(const world::Mesh& triangles, std::vector<std::uint32_t> materials = {},
              std::span<const glm::vec2> coordinates = {});
