@@ -14,6 +14,7 @@
 
 #include "bench/cost.h"
 #include "bench/spatial_embree.h"
+#include "bench/usage.h"
 #include "farm/farm.h"
 #include "sensors/camera.h"
 #include "sensors/sensor_set.h"
@@ -165,11 +166,14 @@ class Fleet {
 }  // namespace sf::bench
 
 int main(int count, char** arguments) {
-  const auto word = [&](int i, const char* fallback) { return std::string(i < count ? arguments[i] : fallback); };
-  const std::string scene = word(1, "city100");
-  const int robots = std::atoi(word(2, "100").c_str());
-  fmt::print("{}, {} robots\n", scene, robots);
-  sf::bench::Fleet fleet(scene, robots);
-  fleet.run(static_cast<std::size_t>(std::atoi(word(3, "10").c_str())));
-  fleet.print();
+  return sf::bench::run_main(count, arguments, "camera_cost [SCENE [ROBOTS [TICKS]]]; default: city100 100 10", [&] {
+    const auto word = [&](int i, const char* fallback) { return std::string(i < count ? arguments[i] : fallback); };
+    const std::string scene = word(1, "city100");
+    const int robots = std::atoi(word(2, "100").c_str());
+    fmt::print("{}, {} robots\n", scene, robots);
+    sf::bench::Fleet fleet(scene, robots);
+    fleet.run(static_cast<std::size_t>(std::atoi(word(3, "10").c_str())));
+    fleet.print();
+    return 0;
+  });
 }

@@ -10,6 +10,7 @@
 
 #include "base/hash.h"
 #include "bench/cost.h"
+#include "bench/usage.h"
 #include "farm/farm.h"
 #include "raycast/casters.h"
 #include "tests/sensors/chance.h"
@@ -98,18 +99,22 @@ void measure(gpu::Device& device, const Layout& layout, int robots, const raycas
 }  // namespace sf::bench
 
 int main(int argc, char** argv) {
-  sf::gpu::Device device;
-  std::vector<int> sizes;
-  std::string_view chosen;
-  for (int k = 1; k < argc; ++k)
-    if (const int size = std::atoi(argv[k]); size > 0)
-      sizes.push_back(size);
-    else
-      chosen = argv[k];
-  if (sizes.empty()) sizes = {50, 200, 800, 1'000};
-  for (const auto caster : {&sf::raycast::host_caster, &sf::raycast::device_caster})
-    for (const int robots : sizes)
-      for (const sf::bench::Layout& layout : sf::bench::kLayouts)
-        if (std::string_view(layout.name).find(chosen) != std::string_view::npos)
-          sf::bench::measure(device, layout, robots, caster);
+  return sf::bench::run_main(
+      argc, argv, "crowd_cost [ROBOTS|LAYOUT...], where LAYOUT is a part of a layout's name; default: all", [&] {
+        sf::gpu::Device device;
+        std::vector<int> sizes;
+        std::string_view chosen;
+        for (int k = 1; k < argc; ++k)
+          if (const int size = std::atoi(argv[k]); size > 0)
+            sizes.push_back(size);
+          else
+            chosen = argv[k];
+        if (sizes.empty()) sizes = {50, 200, 800, 1'000};
+        for (const auto caster : {&sf::raycast::host_caster, &sf::raycast::device_caster})
+          for (const int robots : sizes)
+            for (const sf::bench::Layout& layout : sf::bench::kLayouts)
+              if (std::string_view(layout.name).find(chosen) != std::string_view::npos)
+                sf::bench::measure(device, layout, robots, caster);
+        return 0;
+      });
 }

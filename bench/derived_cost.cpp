@@ -12,6 +12,7 @@
 
 #include "base/time.h"
 #include "bench/cost.h"
+#include "bench/usage.h"
 #include "farm/farm.h"
 #include "robots/estimation/wheeled_state.h"
 #include "robots/fleet.h"
@@ -94,20 +95,23 @@ double plain_loop(std::size_t robots) {
 }  // namespace sf::bench
 
 int main(int argc, char** argv) {
-  using namespace sf;
-  const int robots = argc > 1 ? std::atoi(argv[1]) : 10'000;
-  const std::string type = argc > 2 ? argv[2] : "localization";
-  const world::World world = bench::fleet(robots, type);
-  std::uint64_t hash = 0, again = 0, unused = 0;
-  const double inputs = bench::ticks(
-      world, base::only(sensors::kEncoder) | base::only(sensors::kGyro) | base::only(sensors::kGps), unused);
-  const double all = bench::ticks(world, farm::kAllSensorTypes, hash);
-  bench::ticks(world, farm::kAllSensorTypes, again);
-  const double count = 2.0 * robots * bench::kTicks;  // measurements: encoder and gyro
-  const double plain = bench::plain_loop(static_cast<std::size_t>(robots));
-  fmt::print("{} of type {} at 20 Hz, encoder and gyro at 20 Hz, {} ticks, hash {:016x}, {} when repeated\n", robots,
-             type, bench::kTicks, hash, hash == again ? "the same" : "another");
-  fmt::print("per measurement: {:.2f} us of processor time in ticks, {:.2f} us in a plain loop, ratio {:.2f}\n",
-             1e6 * (all - inputs) / count, 1e6 * plain / count, (all - inputs) / plain);
-  return hash == again ? 0 : 1;
+  return sf::bench::run_main(
+      argc, argv, "derived_cost [ROBOTS [localization|monitor]]; default: 10000 localization", [&] {
+        using namespace sf;
+        const int robots = argc > 1 ? std::atoi(argv[1]) : 10'000;
+        const std::string type = argc > 2 ? argv[2] : "localization";
+        const world::World world = bench::fleet(robots, type);
+        std::uint64_t hash = 0, again = 0, unused = 0;
+        const double inputs = bench::ticks(
+            world, base::only(sensors::kEncoder) | base::only(sensors::kGyro) | base::only(sensors::kGps), unused);
+        const double all = bench::ticks(world, farm::kAllSensorTypes, hash);
+        bench::ticks(world, farm::kAllSensorTypes, again);
+        const double count = 2.0 * robots * bench::kTicks;  // measurements: encoder and gyro
+        const double plain = bench::plain_loop(static_cast<std::size_t>(robots));
+        fmt::print("{} of type {} at 20 Hz, encoder and gyro at 20 Hz, {} ticks, hash {:016x}, {} when repeated\n",
+                   robots, type, bench::kTicks, hash, hash == again ? "the same" : "another");
+        fmt::print("per measurement: {:.2f} us of processor time in ticks, {:.2f} us in a plain loop, ratio {:.2f}\n",
+                   1e6 * (all - inputs) / count, 1e6 * plain / count, (all - inputs) / plain);
+        return hash == again ? 0 : 1;
+      });
 }

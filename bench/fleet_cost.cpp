@@ -11,6 +11,7 @@
 #include "base/hash.h"
 #include "base/random.h"
 #include "bench/cost.h"
+#include "bench/usage.h"
 #include "robots/device/device_fleet.h"
 #include "robots/fleet.h"
 #include "tests/robots/scenes.h"
@@ -82,12 +83,15 @@ void measure(gpu::Device& device, std::uint32_t worlds, std::uint32_t robots) {
 }  // namespace sf::bench
 
 int main(int argc, char** argv) {
-  sf::gpu::Device device;
-  fmt::print("{}\n", device.info().name);
-  if (argc == 3) {
-    sf::bench::measure(device, static_cast<std::uint32_t>(std::atoi(argv[1])),
-                       static_cast<std::uint32_t>(std::atoi(argv[2])));
+  return sf::bench::run_main(argc, argv, "fleet_cost [WORLDS ROBOTS]; default: four pairs with a thousand robots", [&] {
+    sf::gpu::Device device;
+    fmt::print("{}\n", device.info().name);
+    if (argc == 3) {
+      sf::bench::measure(device, static_cast<std::uint32_t>(std::atoi(argv[1])),
+                         static_cast<std::uint32_t>(std::atoi(argv[2])));
+      return 0;
+    }
+    for (const std::uint32_t robots : {1u, 10u, 100u, 1'000u}) sf::bench::measure(device, 1'000 / robots, robots);
     return 0;
-  }
-  for (const std::uint32_t robots : {1u, 10u, 100u, 1'000u}) sf::bench::measure(device, 1'000 / robots, robots);
+  });
 }

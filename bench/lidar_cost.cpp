@@ -28,6 +28,7 @@
 #include "bench/cost.h"
 #include "bench/lidar_scenes.h"
 #include "bench/spatial_embree.h"
+#include "bench/usage.h"
 #include "scene/join_triangles.h"
 #include "scene/rasterizer.h"
 #include "scene/reference_scan.h"
@@ -395,9 +396,13 @@ int run(const std::string& scene_name, const std::string& sensor, int poses, std
 }  // namespace sf::bench
 
 int main(int count, char** arguments) {
-  const char* const isa = std::getenv("LIDAR_ISA");
-  if (isa != nullptr && std::string(isa) == "avx2") hwy::DisableTargets(HWY_AVX2 - 1);
-  const auto word = [&](int i, const char* fallback) { return std::string(i < count ? arguments[i] : fallback); };
-  return sf::bench::run(word(1, "city100"), word(2, "lidar64x1024"), std::atoi(word(3, "20").c_str()),
-                        static_cast<std::size_t>(std::atoi(word(4, "7").c_str())), word(5, ""));
+  return sf::bench::run_main(
+      count, arguments, "lidar_cost [SCENE [SENSOR [POSES [TURNS [METHODS]]]]]; default: city100 lidar64x1024 20 7",
+      [&] {
+        const char* const isa = std::getenv("LIDAR_ISA");
+        if (isa != nullptr && std::string(isa) == "avx2") hwy::DisableTargets(HWY_AVX2 - 1);
+        const auto word = [&](int i, const char* fallback) { return std::string(i < count ? arguments[i] : fallback); };
+        return sf::bench::run(word(1, "city100"), word(2, "lidar64x1024"), std::atoi(word(3, "20").c_str()),
+                              static_cast<std::size_t>(std::atoi(word(4, "7").c_str())), word(5, ""));
+      });
 }

@@ -14,6 +14,7 @@
 #include "base/hash.h"
 #include "base/thread_pool.h"
 #include "bench/lidar_scenes.h"
+#include "bench/usage.h"
 #include "scene/device/device_rasterizer.h"
 
 namespace sf::bench {
@@ -99,7 +100,10 @@ int run(const std::string& scene_name, const std::string& sensor, int robots, in
 }  // namespace sf::bench
 
 int main(int count, char** arguments) {
-  const auto word = [&](int i, const char* fallback) { return std::string(i < count ? arguments[i] : fallback); };
-  return sf::bench::run(word(1, "city100"), word(2, "lidar64x1024"), std::atoi(word(3, "100").c_str()),
-                        std::atoi(word(4, "7").c_str()));
+  return sf::bench::run_main(
+      count, arguments, "lidar_device [SCENE [SENSOR [ROBOTS [TURNS]]]]; default: city100 lidar64x1024 100 7", [&] {
+        const auto word = [&](int i, const char* fallback) { return std::string(i < count ? arguments[i] : fallback); };
+        return sf::bench::run(word(1, "city100"), word(2, "lidar64x1024"), std::atoi(word(3, "100").c_str()),
+                              std::atoi(word(4, "7").c_str()));
+      });
 }

@@ -15,6 +15,7 @@
 
 #include "base/rigid_transform.h"
 #include "bench/lidar_scenes.h"
+#include "bench/usage.h"
 #include "scene/rasterizer.h"
 #include "scene/reference_scan.h"
 
@@ -175,11 +176,13 @@ std::size_t run(const Case& c, std::size_t beams_wanted) {
 }  // namespace sf::bench
 
 int main(int count, char** arguments) {
-  const auto number = [&](int i, std::size_t otherwise) {
-    return i < count ? static_cast<std::size_t>(std::atoll(arguments[i])) : otherwise;
-  };
-  std::size_t outside = 0;
-  for (std::size_t i = number(2, 0); i < std::min(number(3, 10), std::size(sf::bench::kCases)); ++i)
-    outside += sf::bench::run(sf::bench::kCases[i], number(1, 1'000'000));
-  return outside == 0 ? 0 : 1;
+  return sf::bench::run_main(count, arguments, "lidar_errors [BEAMS [FIRST [END]]]; default: 1000000 0 10", [&] {
+    const auto number = [&](int i, std::size_t otherwise) {
+      return i < count ? static_cast<std::size_t>(std::atoll(arguments[i])) : otherwise;
+    };
+    std::size_t outside = 0;
+    for (std::size_t i = number(2, 0); i < std::min(number(3, 10), std::size(sf::bench::kCases)); ++i)
+      outside += sf::bench::run(sf::bench::kCases[i], number(1, 1'000'000));
+    return outside == 0 ? 0 : 1;
+  });
 }

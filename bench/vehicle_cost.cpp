@@ -12,6 +12,7 @@
 #include "base/hash.h"
 #include "base/thread_pool.h"
 #include "bench/cost.h"
+#include "bench/usage.h"
 #include "robots/fleet.h"
 #include "tests/robots/scenes.h"
 
@@ -76,8 +77,11 @@ void measure(std::uint32_t cars, unsigned threads, bool hills) {
 }  // namespace sf::bench
 
 int main(int argc, char** argv) {
-  const auto number = [&](int k, unsigned fallback) {
-    return argc > k ? static_cast<unsigned>(std::atoi(argv[k])) : fallback;
-  };
-  for (const bool hills : {false, true}) sf::bench::measure(number(1, 1'000), number(2, 2), hills);
+  return sf::bench::run_main(argc, argv, "vehicle_cost [CARS [THREADS]]; default: 1000 2", [&] {
+    const auto number = [&](int k, unsigned fallback) {
+      return argc > k ? static_cast<unsigned>(std::atoi(argv[k])) : fallback;
+    };
+    for (const bool hills : {false, true}) sf::bench::measure(number(1, 1'000), number(2, 2), hills);
+    return 0;
+  });
 }

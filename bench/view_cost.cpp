@@ -19,6 +19,7 @@
 
 #include "bench/cost.h"
 #include "bench/tiles.h"
+#include "bench/usage.h"
 #include "bridges/viewer.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
@@ -156,9 +157,12 @@ int main(int argc, char** argv) {
     sf::bench::read_channels(static_cast<std::uint16_t>(std::atoi(argv[2])), {argv + 3, argv + argc});
     return 0;
   }
-  const auto robots = static_cast<std::uint32_t>(argc > 1 ? std::atoi(argv[1]) : 1000);
-  const double seconds = argc > 2 ? std::atof(argv[2]) : 6.0;
-  sf::gpu::Device device;
-  sf::bench::measure(0.1, robots, seconds, device);         // every robot's laser in every tick
-  sf::bench::measure(1.0 / 30.0, robots, seconds, device);  // lasers at 10 Hz: in every third tick
+  return sf::bench::run_main(argc, argv, "view_cost [ROBOTS [SECONDS]]; default: 1000 6", [&] {
+    const auto robots = static_cast<std::uint32_t>(argc > 1 ? std::atoi(argv[1]) : 1000);
+    const double seconds = argc > 2 ? std::atof(argv[2]) : 6.0;
+    sf::gpu::Device device;
+    sf::bench::measure(0.1, robots, seconds, device);         // every robot's laser in every tick
+    sf::bench::measure(1.0 / 30.0, robots, seconds, device);  // lasers at 10 Hz: in every third tick
+    return 0;
+  });
 }

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <glm/geometric.hpp>
+#include <map>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "base/box_tree.h"
 #include "base/pose.h"
 #include "scene/join_triangles.h"
+#include "scene/rectangles.h"
 #include "scene/trapezoids.h"
 #include "world/ground.h"
 #include "world/terrain.h"
@@ -67,13 +70,16 @@ std::size_t end_of_outline(std::span<const Segment> segments, std::size_t first,
   return end;
 }
 
-/// Returns the closed outlines of solids. Others have no inside.
-std::vector<Loop> loops_of(std::span<const Segment> segments) {
+/// Returns the closed outlines of solids.
+/// @param rest out: all other segments of solids
+std::vector<Loop> loops_of(std::span<const Segment> segments, std::vector<Segment>& rest) {
   std::vector<Loop> loops;
   for (std::size_t first = 0; first < segments.size();) {
     bool closed = false;
     const std::size_t end = end_of_outline(segments, first, closed);
-    if (segments[first].solid_left && closed) loops.push_back(loop_of(segments.subspan(first, end - first)));
+    const auto outline = segments.subspan(first, end - first);
+    if (segments[first].solid_left && closed) loops.push_back(loop_of(outline));
+    if (segments[first].solid_left && !closed) rest.insert(rest.end(), outline.begin(), outline.end());
     first = end;
   }
   return loops;
@@ -103,10 +109,10 @@ class Holes {
   base::BoxTree tree_;
 };
 
-/// Appends the pieces of a region at one height.
-void add_flat(std::span<const RegionEdge> edges, std::span<const double> heights, Mesh& mesh,
+/// Appends the pieces of a region at each height.
+void add_flat(std::span<const Trapezoid> pieces, std::span<const double> heights, Mesh& mesh,
               std::optional<std::uint32_t> owner) {
-  for (const Trapezoid& piece : trapezoids_of(edges)) {
+  for (const Trapezoid& piece : pieces) {
     std::vector<glm::dvec2> corners(piece.begin(), piece.end());
     const auto same = std::unique(corners.begin(), corners.end());
     corners.erase(same, corners.end());
@@ -120,6 +126,12 @@ void add_flat(std::span<const RegionEdge> edges, std::span<const double> heights
   }
 }
 
+std::vector<double> cap_heights(const Segment& solid, bool on_floor) {
+  std::vector<double> heights{solid.z_min, solid.z_max};
+  if (on_floor) std::erase(heights, 0.0);
+  return heights;
+}
+
 /// Appends the top and bottom of the solid inside an outline, without its holes.
 void add_caps(const Loop& outer, const Holes& holes, bool on_floor, Mesh& mesh) {
   const Segment& solid = outer.segments.front();
@@ -129,9 +141,29 @@ void add_caps(const Loop& outer, const Holes& holes, bool on_floor, Mesh& mesh) 
   };
   add(outer);
   holes.for_each_in(outer, add);
-  std::vector<double> heights{solid.z_min, solid.z_max};
-  if (on_floor) std::erase(heights, 0.0);
-  add_flat(edges, heights, mesh, solid.model);
+  add_flat(trapezoids_of(edges), cap_heights(solid, on_floor), mesh, solid.model);
+}
+
+/// Returns whether the edges are closed outlines: as many begin as end at each point.
+bool are_closed(std::span<const RegionEdge> edges) {
+  std::vector<std::array<double, 2>> starts, ends;
+  for (const RegionEdge& e : edges) starts.push_back({e.a.x, e.a.y}), ends.push_back({e.b.x, e.b.y});
+  std::ranges::sort(starts), std::ranges::sort(ends);
+  return starts == ends;
+}
+
+/// Appends the tops and bottoms of solids whose outlines are in any order, as those of pictures. An open outline has no
+/// inside.
+void add_unordered_caps(std::span<const Segment> segments, bool on_floor, Mesh& mesh) {
+  std::map<std::tuple<std::uint32_t, double, double>, std::vector<const Segment*>> solids;
+  for (const Segment& s : segments) solids[{s.model, s.z_min, s.z_max}].push_back(&s);
+  for (const auto& [key, sides] : solids) {
+    std::vector<RegionEdge> edges;
+    for (const Segment* s : sides) edges.push_back({s->a, s->b});
+    if (!are_closed(edges)) continue;
+    const auto rectangles = rectangles_of(edges);
+    add_flat(rectangles ? *rectangles : trapezoids_of(edges), cap_heights(*sides[0], on_floor), mesh, sides[0]->model);
+  }
 }
 
 /// Appends the outline of a hole clockwise.
@@ -156,10 +188,12 @@ Mesh mesh_of(std::span<const Segment> segments, bool on_floor) {
     const std::array<glm::dvec3, 4> side{glm::dvec3{s.a, s.z_min}, {s.b, s.z_min}, {s.b, s.z_max}, {s.a, s.z_max}};
     mesh.add(side, s.model);
   }
-  const std::vector<Loop> loops = loops_of(seen);
+  std::vector<Segment> rest;
+  const std::vector<Loop> loops = loops_of(seen, rest);
   const Holes holes(loops);
   for (const Loop& loop : loops)
     if (loop.area > 0.0) add_caps(loop, holes, on_floor, mesh);
+  add_unordered_caps(rest, on_floor, mesh);
   return mesh;
 }
 
@@ -200,19 +234,23 @@ Mesh holed_floor(const world::World& world, double reach) {
   const glm::dvec2 low = box.min - 2.0 * reach, high = box.max + 2.0 * reach;
   const std::array<glm::dvec2, 4> outer{low, {high.x, low.y}, high, {low.x, high.y}};
   for (std::size_t i = 0; i < 4; ++i) edges.push_back({outer[i], outer[(i + 1) % 4]});
-  add_flat(split_at_crossings(edges), std::array{0.0}, mesh, {});
+  add_flat(trapezoids_of(split_at_crossings(edges)), std::array{0.0}, mesh, {});
   return mesh;
 }
 
 Mesh mesh_of(const world::Mesh& triangles, std::vector<std::uint32_t> materials,
              std::span<const glm::vec2> coordinates) {
-  Mesh mesh{triangles.vertices, {}, {}, std::move(materials), {}};
+  Mesh mesh{triangles.vertices, {}, {}, {}, {}};
   const std::vector<std::uint32_t>& corners = triangles.corners;
   mesh.faces.reserve(corners.size() / 3);
-  for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+    const glm::dvec3 p = mesh.vertices[corners[i]];
+    const glm::dvec3 normal = glm::cross(mesh.vertices[corners[i + 1]] - p, mesh.vertices[corners[i + 2]] - p);
+    if (!(glm::dot(normal, normal) > 0.0)) continue;
     mesh.faces.push_back({corners[i], corners[i + 1], corners[i + 2], corners[i + 2]});
-  for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3)
-    mesh.coordinates.push_back({coordinates[i], coordinates[i + 1], coordinates[i + 2]});
+    if (!materials.empty()) mesh.materials.push_back(materials[i / 3]);
+    if (!coordinates.empty()) mesh.coordinates.push_back({coordinates[i], coordinates[i + 1], coordinates[i + 2]});
+  }
   return join_triangles(std::move(mesh));
 }
 

@@ -12,7 +12,8 @@ namespace sf::scene {
 
 /// Returns the sides of all segments that lasers see, and for those of closed outlines of a solid
 /// (Segment::solid_left) its top and bottom. Segments without a height (z_min >= z_max) have no surface.
-/// @param segments in the order of the outlines, forward or backward, each outline closed by its last segment
+/// @param segments in the order of the outlines, forward or backward, each outline closed by its last segment; those of
+/// a picture (world/bitmap.h) in any order
 /// @param on_floor leaves out horizontal faces at z = 0, which coincide with the floor
 Mesh mesh_of(std::span<const world::Segment> segments, bool on_floor = false);
 
@@ -26,7 +27,8 @@ base::Box box_of_holes(const world::World& world);
 /// owners.
 Mesh holed_floor(const world::World& world, double reach);
 
-/// Returns the surface of a file's mesh, without owners. @param materials per triangle, as Mesh::materials
+/// Returns the surface of a file's mesh, without owners and triangles whose area is 0, as scaling may leave some.
+/// @param materials per triangle, as Mesh::materials
 /// @param coordinates as world::MeshTextures::corners, or empty
 Mesh mesh_of(const world::Mesh& triangles, std::vector<std::uint32_t> materials = {},
              std::span<const glm::vec2> coordinates = {});

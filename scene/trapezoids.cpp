@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <map>
+#include <iterator>
 #include <utility>
 
 #include "base/box_tree.h"
@@ -33,13 +33,22 @@ class Sweep {
 
  private:
   using Pair = std::pair<std::uint32_t, std::uint32_t>;  ///< left and right side
-  std::vector<Pair> pairs_between(double y0, double y1);
-  void close(const Pair& pair, double from, double to);
+  /// The piece on the right of a side.
+  struct Open {
+    std::uint32_t right = 0xFFFFFFFFu;  ///< its other side; if there is no piece, none
+    double from = 0.0;                  ///< height of its lower side
+    std::size_t last = 0;               ///< step of the sweep in which it was found again
+  };
+  void activate(double y0, double y1);
+  void find_pairs(std::vector<Pair>& pairs) const;
+  void close(std::vector<Pair>& pairs, double to);
 
   std::vector<Side> sides_;  ///< by the height of their lower ends
   std::vector<double> heights_;
-  std::vector<std::uint32_t> active_;
-  std::size_t next_ = 0;  ///< first side above the sweep line
+  std::vector<std::uint32_t> active_;  ///< from left to right
+  std::vector<double> x_;              ///< per side: where it is in the middle between two heights
+  std::size_t next_ = 0;               ///< first side above the sweep line
+  std::vector<Open> open_;             ///< per side
   std::vector<Trapezoid> out_;
 };
 
@@ -53,44 +62,61 @@ Sweep::Sweep(std::span<const RegionEdge> edges) {
   std::ranges::sort(heights_);
   const auto same = std::ranges::unique(heights_);
   heights_.erase(same.begin(), same.end());
+  x_.resize(sides_.size()), open_.resize(sides_.size());
 }
 
-/// Returns the pairs of sides between which the region lies.
-std::vector<Sweep::Pair> Sweep::pairs_between(double y0, double y1) {
+/// Sorts the sides between two heights. Those that were active keep their order, unless they cross.
+void Sweep::activate(double y0, double y1) {
   std::erase_if(active_, [&](std::uint32_t i) { return sides_[i].high.y <= y0; });
+  const auto known = static_cast<std::ptrdiff_t>(active_.size());
   for (; next_ < sides_.size() && sides_[next_].low.y <= y0; ++next_)
     active_.push_back(static_cast<std::uint32_t>(next_));
-  const double middle = 0.5 * (y0 + y1);
-  std::ranges::sort(active_, {}, [&](std::uint32_t i) { return std::pair(sides_[i].x_at(middle), i); });
-  std::vector<Pair> pairs;
+  for (const std::uint32_t i : active_) x_[i] = sides_[i].x_at(0.5 * (y0 + y1));
+  const auto before = [&](std::uint32_t i, std::uint32_t j) { return std::pair(x_[i], i) < std::pair(x_[j], j); };
+  std::sort(active_.begin() + known, active_.end(), before);
+  std::inplace_merge(active_.begin(), active_.begin() + known, active_.end(), before);
+  if (!std::ranges::is_sorted(active_, before)) std::ranges::sort(active_, before);
+}
+
+/// Finds the pairs of active sides between which the region lies.
+void Sweep::find_pairs(std::vector<Pair>& pairs) const {
+  pairs.clear();
   int winding = 0;
   for (std::size_t k = 0, left = 0; k < active_.size(); ++k) {
     const int before = std::exchange(winding, winding + sides_[active_[k]].winding);
     if (before <= 0 && winding > 0) left = k;
     if (before > 0 && winding <= 0) pairs.emplace_back(active_[left], active_[k]);
   }
-  return pairs;
 }
 
-void Sweep::close(const Pair& pair, double from, double to) {
-  const Side &left = sides_[pair.first], &right = sides_[pair.second];
-  out_.push_back(
-      {glm::dvec2{left.x_at(from), from}, {right.x_at(from), from}, {right.x_at(to), to}, {left.x_at(to), to}});
+/// Ends the pieces of pairs.
+void Sweep::close(std::vector<Pair>& pairs, double to) {
+  std::ranges::sort(pairs);
+  for (const auto& [l, r] : pairs) {
+    const Side &left = sides_[l], &right = sides_[r];
+    const double from = open_[l].from;
+    out_.push_back(
+        {glm::dvec2{left.x_at(from), from}, {right.x_at(from), from}, {right.x_at(to), to}, {left.x_at(to), to}});
+    open_[l] = {};
+  }
 }
 
 std::vector<Trapezoid> Sweep::run() {
-  std::map<Pair, double> open;  // with the height of their lower side
+  std::vector<Pair> before, now, ended;
   for (std::size_t k = 0; k + 1 < heights_.size(); ++k) {
-    std::map<Pair, double> continued;
-    for (const Pair& pair : pairs_between(heights_[k], heights_[k + 1])) {
-      const auto known = open.find(pair);
-      continued[pair] = known == open.end() ? heights_[k] : known->second;
-      if (known != open.end()) open.erase(known);
-    }
-    for (const auto& [pair, from] : open) close(pair, from, heights_[k]);
-    open = std::move(continued);
+    activate(heights_[k], heights_[k + 1]);
+    find_pairs(now);
+    for (const auto& [left, right] : now)
+      if (open_[left].right == right) open_[left].last = k;
+    ended.clear();
+    std::ranges::copy_if(before, std::back_inserter(ended),
+                         [&](const Pair& pair) { return open_[pair.first].last != k; });
+    close(ended, heights_[k]);
+    for (const auto& [left, right] : now)
+      if (open_[left].right != right) open_[left] = {right, heights_[k], k};
+    std::swap(before, now);
   }
-  for (const auto& [pair, from] : open) close(pair, from, heights_.back());
+  close(before, heights_.empty() ? 0.0 : heights_.back());
   return std::move(out_);
 }
 

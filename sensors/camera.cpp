@@ -201,7 +201,7 @@ void Cameras::finish(std::size_t i, unsigned) {
 
 ParsedSensors parse_cameras(const world::World& world) {
   CameraReader reader;
-  BeamBudget budget("cameras", "pixels, 'samples',");
+  BeamBudget budget(world, "cameras", "pixels, 'samples',");
   const world::Daylight day = world::daylight_of(world);
   const bool sunny = day.elevation > 0.0 && day.sun > 0.0;
   return parse_each(world, camera_type, [&](const world::Sensor& sensor, SensorSpec& row) {

@@ -152,7 +152,7 @@ void Lidars::collect(std::span<base::ReadingBlock> out) {
 
 ParsedSensors parse_lidars(const world::World& world) {
   LidarReader reader;
-  BeamBudget budget("lidars", "'columns', 'channels',");
+  BeamBudget budget(world, "lidars", "'columns', 'channels',");
   return parse_each(world, lidar_type, [&](const world::Sensor& sensor, SensorSpec& row) {
     LidarSettings s = reader.read(world, sensor);
     const EchoSettings& echo = s.echo;

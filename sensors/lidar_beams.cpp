@@ -13,6 +13,7 @@
 #include "sensors/lidar_layout.h"
 #include "sensors/lidar_modes.h"
 #include "sensors/settings.h"
+#include "sensors/spatial_scene.h"
 
 namespace sf::sensors {
 
@@ -165,6 +166,7 @@ void read_echoes(const world::Sensor& sensor, EchoSettings& s) {
 std::int64_t LidarBeams::duration() const { return times.empty() ? 0 : base::nanoseconds(-std::ranges::min(times)); }
 
 void BeamBudget::add(const world::Sensor& sensor, std::string_view key, std::size_t beams) {
+  if (used_ == 0) require_mesh_places(world_);
   used_ += beams;
   if (used_ > kMost)
     refuse(

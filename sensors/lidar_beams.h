@@ -56,16 +56,18 @@ inline constexpr std::string_view kLidarKeys[] = {
     "range",     "range_max", "noise",           "pose6",   "directions", "rolling",    "scan_time",  "intensity",
     "incidence", "returns",   "intensity_range", "detects", "dropout",    "divergence", "beam_parts", "separation"};
 
-/// Bounds the beams of all sensors of a kind in a world.
+/// Bounds the beams of all sensors of a kind in a world, and what they may meet (require_mesh_places).
 class BeamBudget {
  public:
   static constexpr std::size_t kMost = 100'000'000;
   /// @param sensors in the plural  @param fewer remedies for an error, in its words
-  BeamBudget(std::string_view sensors, std::string_view fewer) : sensors_(sensors), fewer_(fewer) {}
-  /// @throws base::InputError, at the key, if there are more than kMost now
+  BeamBudget(const world::World& world, std::string_view sensors, std::string_view fewer)
+      : world_(world), sensors_(sensors), fewer_(fewer) {}
+  /// @throws base::InputError, at the key, if there are more than kMost now, and for too many triangles of meshes
   void add(const world::Sensor& sensor, std::string_view key, std::size_t beams);
 
  private:
+  const world::World& world_;
   std::string_view sensors_, fewer_;
   std::size_t used_ = 0;
 };

@@ -228,7 +228,7 @@ namespace {
 
 ParsedSensors parse_radars(const world::World& world) {
   std::map<std::vector<double>, std::shared_ptr<const LidarBeams>> known;
-  BeamBudget budget("radars", "'columns', 'channels',");
+  BeamBudget budget(world, "radars", "'columns', 'channels',");
   return parse_each(world, radar_type, [&](const world::Sensor& sensor, SensorSpec& row) {
     RadarSettings s = read_radar(sensor);
     const LidarLayout layout = read_layout(sensor);

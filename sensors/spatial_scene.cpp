@@ -30,7 +30,9 @@ std::vector<world::Segment> without(std::span<const world::Segment> segments, co
   return rest;
 }
 
-void require_numbers(const world::World& world) {
+}  // namespace
+
+void require_mesh_places(const world::World& world) {
   std::uint64_t faces = 0;
   for (const world::MeshModel& row : world.mesh_models)
     faces +=
@@ -43,15 +45,13 @@ void require_numbers(const world::World& world) {
                     faces, kMostFaces));
 }
 
-}  // namespace
-
 SpatialScene::SpatialScene(const world::World& world, double reach, const SceneExtras& extras)
     : copies_(world),
       floor_(!world.floor_unseen),
       holes_(scene::box_of_holes(world)),
       carried_(world.movers.size() / world.copies),
       X_WM_(world.movers.size()) {
-  require_numbers(world);
+  require_mesh_places(world);
   walls_ = scene::build_tree(scene::mesh_of(without(world.walls, models_with_mesh(world)), !world.floor_unseen));
   roads_ = scene::build_tree(scene::roads_of(world));
   for (const world::Terrain& row : world.terrain) {
@@ -60,7 +60,11 @@ SpatialScene::SpatialScene(const world::World& world, double reach, const SceneE
   }
   if (floor_ && !(world.floor_holes.empty() && world.terrain.empty()))
     holed_floor_ = scene::build_tree(scene::holed_floor(world, reach));
-  add_meshes(world, extras);
+  if (extras.materials) add_materials(world, extras.textures);
+  for (std::uint32_t i = 0; i < world.meshes.size(); ++i) {
+    if (extras.coarse) levels_.push_back(scene::levels_of(world.meshes[i], materials_of(world, i)));
+    meshes_.push_back(tree_of(world, i, world.meshes[i]));
+  }
   for (const world::MeshModel& row : world.mesh_models) {
     const std::uint32_t mover = world.models[row.model].mover;
     const bool own = mover != world::kNone && world.movers[mover].model == row.model;
@@ -70,39 +74,72 @@ SpatialScene::SpatialScene(const world::World& world, double reach, const SceneE
   update_movers(world);
 }
 
-void SpatialScene::add_meshes(const world::World& world, const SceneExtras& extras) {
-  std::vector<std::vector<std::uint32_t>> of_faces(world.meshes.size());
-  std::vector<std::span<const glm::vec2>> coordinates(world.meshes.size());
+void SpatialScene::add_materials(const world::World& world, bool textures) {
   for (const world::MeshMaterials& row : world.mesh_materials) {
-    if (!extras.materials) break;
-    const auto first = static_cast<std::uint32_t>(materials_.size());
-    for (const std::uint32_t material : row.triangles)
-      of_faces[row.mesh].push_back(material == world::kNoMaterial ? material : first + material);
+    const std::size_t first = materials_.size();
+    first_material_.push_back(static_cast<std::uint32_t>(first));
     materials_.insert(materials_.end(), row.materials.begin(), row.materials.end());
     const auto textured = std::ranges::find(world.mesh_textures, row.mesh, &world::MeshTextures::mesh);
-    if (!extras.textures || textured == world.mesh_textures.end()) continue;
+    if (!textures || textured == world.mesh_textures.end()) continue;
     textures_.resize(first);
     textures_.insert(textures_.end(), textured->materials.begin(), textured->materials.end());
-    coordinates[row.mesh] = textured->corners;
   }
   if (!textures_.empty()) textures_.resize(materials_.size());
-  for (std::size_t i = 0; i < world.meshes.size(); ++i) {
-    if (extras.coarse) levels_.push_back(scene::levels_of(world.meshes[i], of_faces[i]));
-    meshes_.push_back(scene::build_tree(scene::mesh_of(world.meshes[i], std::move(of_faces[i]), coordinates[i])));
+}
+
+/// Builds the tree of a mesh, possibly with other vertices than the world's.
+scene::SurfaceTree SpatialScene::tree_of(const world::World& world, std::uint32_t row, const world::Mesh& mesh) const {
+  const auto textured = std::ranges::find(world.mesh_textures, row, &world::MeshTextures::mesh);
+  const bool has_textures = !textures_.empty() && textured != world.mesh_textures.end();
+  return scene::build_tree(scene::mesh_of(mesh, materials_of(world, row),
+                                          has_textures ? std::span(textured->corners) : std::span<const glm::vec2>{}));
+}
+
+std::vector<std::uint32_t> SpatialScene::materials_of(const world::World& world, std::uint32_t mesh) const {
+  std::vector<std::uint32_t> of_triangles;
+  for (std::size_t i = 0; i < first_material_.size(); ++i) {
+    const world::MeshMaterials& row = world.mesh_materials[i];
+    if (row.mesh != mesh) continue;
+    for (const std::uint32_t material : row.triangles)
+      of_triangles.push_back(material == world::kNoMaterial ? material : first_material_[i] + material);
+  }
+  return of_triangles;
+}
+
+/// Finds the mesh of a mover of another size among those of the last update, or builds it.
+void SpatialScene::scale_mesh(const world::World& world, std::uint32_t mover,
+                              std::map<ScaledMesh, scene::SurfaceTree>& scaled) {
+  const std::optional<world::Stretch> stretch = world::stretch_of(world, mover);
+  if (!stretch || !stretch->any()) return;
+  for (const Part& part : carried_[copies_.row_of(mover)]) {
+    if (!part.own) continue;
+    const glm::dvec3 &from = stretch->from, &to = stretch->to;
+    const ScaledMesh key{part.mesh, {from.x, from.y, from.z, to.x, to.y, to.z}};
+    if (const auto known = scaled_.find(key); known != scaled_.end()) scaled.insert(scaled_.extract(known));
+    auto found = scaled.find(key);
+    if (found == scaled.end()) {
+      world::Mesh mesh = world.meshes[part.mesh];
+      for (glm::dvec3& p : mesh.vertices) p = (*stretch)(p);
+      found = scaled.emplace(key, tree_of(world, part.mesh, mesh)).first;
+    }
+    resized_[mover] = &found->second;
   }
 }
 
 void SpatialScene::update_movers(const world::World& world) {
   bodies_.clear();
-  changed_.assign(world.movers.size(), 0);
+  changed_.assign(world.movers.size(), 0), resized_.assign(world.movers.size(), nullptr);
+  std::map<ScaledMesh, scene::SurfaceTree> scaled;
   std::vector<std::uint8_t> with_mesh = models_with_mesh(world);
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
     const world::Mover& mover = world.movers[m];
-    changed_[m] = !world::has_own_shape(world, m);
+    changed_[m] = !world::stretch_of(world, m);
     const std::uint8_t own = std::exchange(with_mesh[mover.model], changed_[m] ? 0 : with_mesh[mover.model]);
     bodies_.push_back(scene::build_tree(scene::mesh_of(without(mover.body, with_mesh))));
     with_mesh[mover.model] = own;
+    scale_mesh(world, m, scaled);
   }
+  scaled_ = std::move(scaled);
 }
 
 void SpatialScene::place(std::span<const base::Report> states) {
@@ -134,16 +171,24 @@ void SpatialScene::add_mover(std::uint32_t m, const SensorView& view, SceneList&
     if (moves && out.instances.size() > row) out.moving.push_back({row, m, X_MI});
   };
   add_moving({}, [&](const base::RigidTransform& X_WI) { add(bodies_[m], X_WI, base::kNoHit, near, out); });
-  for (const Part& part : carried_[copies_.row_of(m)])
-    if (!part.own || changed_[m] == 0)
-      add_moving(part.X_BF,
-                 [&](const base::RigidTransform& X_WI) { add_mesh(part.mesh, X_WI, part.model, near, out); });
+  for (const Part& part : carried_[copies_.row_of(m)]) {
+    if (part.own && changed_[m] != 0) continue;
+    const scene::SurfaceTree* const resized = part.own ? resized_[m] : nullptr;
+    add_moving(part.X_BF, [&](const base::RigidTransform& X_WI) {
+      resized != nullptr ? add(*resized, X_WI, part.model, near, out)
+                         : add_mesh(part.mesh, X_WI, part.model, near, out);
+    });
+  }
 }
 
 double SpatialScene::largest() const {
   double largest = 0.0;
+  const auto take = [&](const scene::SurfaceTree& tree) {
+    largest = std::max(largest, tree.radius + glm::length(tree.centre));
+  };
   for (const auto* trees : {&bodies_, &meshes_})
-    for (const scene::SurfaceTree& tree : *trees) largest = std::max(largest, tree.radius + glm::length(tree.centre));
+    for (const scene::SurfaceTree& tree : *trees) take(tree);
+  for (const auto& [mesh, tree] : scaled_) take(tree);
   return largest;
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 // Surfaces that spatial sensors see: walls and movers as solids, and meshes in place of models that have one.
 
+#include <array>
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/box.h"
@@ -49,13 +52,17 @@ struct SceneList {
 /// Puts the moving instances of a list where they are at a time [ns]. @param instances those of the list, or a copy
 void move_to(std::int64_t time, const MoverTrails& trails, const SceneList& list, std::span<scene::Instance> instances);
 
+/// @throws base::InputError for more triangles than their numbers can tell apart, over all places of all meshes
+void require_mesh_places(const world::World& world);
+
 class SpatialScene {
  public:
-  /// @throws base::InputError for more triangles than their numbers can tell apart, over all places of all meshes
+  /// @throws as require_mesh_places
   /// @param reach [m] longest range of a sensor
   SpatialScene(const world::World& world, double reach, const SceneExtras& extras = {});
 
-  /// Builds the bodies of all movers again. Meshes stay; one whose mover has another shape or size is not seen.
+  /// Builds the bodies of all movers again. Meshes of movers that have another size are scaled, without coarser forms;
+  /// those of movers that have another shape are not seen.
   void update_movers(const world::World& world);
   /// @param states per mover
   void place(std::span<const base::Report> states);
@@ -80,7 +87,14 @@ class SpatialScene {
     std::uint32_t model = 0;
     bool own = false;  ///< of the mover's own model, whose shape may change
   };
-  void add_meshes(const world::World& world, const SceneExtras& extras);
+  /// A mesh, and the sizes of its world::Stretch.
+  using ScaledMesh = std::pair<std::uint32_t, std::array<double, 6>>;
+
+  void add_materials(const world::World& world, bool textures);
+  /// Materials of a mesh's triangles, as rows of `materials_`; empty: it has none, or they were not asked for.
+  std::vector<std::uint32_t> materials_of(const world::World& world, std::uint32_t mesh) const;
+  scene::SurfaceTree tree_of(const world::World& world, std::uint32_t row, const world::Mesh& mesh) const;
+  void scale_mesh(const world::World& world, std::uint32_t mover, std::map<ScaledMesh, scene::SurfaceTree>& scaled);
   void add_mover(std::uint32_t mover, const SensorView& view, SceneList& out) const;
   void add_mesh(std::uint32_t mesh, const base::RigidTransform& X_WI, std::uint32_t owner, const SensorView& view,
                 SceneList& out) const;
@@ -97,13 +111,16 @@ class SpatialScene {
   base::RigidTransform X_WF_;   ///< its frame
   std::vector<world::Material> materials_;
   std::vector<world::TextureUse> textures_;
+  std::vector<std::uint32_t> first_material_;  ///< per row of World::mesh_materials; empty: not asked for
   std::vector<scene::SurfaceTree> meshes_;
   std::vector<std::vector<scene::MeshLevel>> levels_;  ///< per mesh; empty: only exact ones
   std::vector<Part> fixed_;
   std::vector<std::vector<Part>> carried_;  ///< per mover of one world
   std::vector<scene::SurfaceTree> bodies_;  ///< per mover
-  std::vector<std::uint8_t> changed_;       ///< per mover: its own model has another shape or size than in the file
-  std::vector<base::RigidTransform> X_WM_;  ///< per mover
+  std::vector<std::uint8_t> changed_;       ///< per mover: its own model has another shape than in the file
+  std::map<ScaledMesh, scene::SurfaceTree> scaled_;
+  std::vector<const scene::SurfaceTree*> resized_;  ///< per mover: its own mesh in another size; null: as in the file
+  std::vector<base::RigidTransform> X_WM_;          ///< per mover
 };
 
 }  // namespace sf::sensors

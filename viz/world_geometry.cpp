@@ -93,7 +93,8 @@ class DrawnMeshes {
   /// @param mover kNone: a static model
   bool has(std::uint32_t model, std::uint32_t mover) const {
     return model < has_.size() && has_[model] != 0 &&
-           (mover == world::kNone || world_.movers[mover].model != model || world::has_own_shape(world_, mover));
+           (mover == world::kNone || world_.movers[mover].model != model ||
+            world::stretch_of(world_, mover).has_value());
   }
   /// Calls `add_cell(model)` for each triangle of the models of a mover that it has appended.
   template <class AddCell>
@@ -105,7 +106,12 @@ class DrawnMeshes {
       const world::Mesh& mesh = world_.meshes[row.mesh];
       const auto first = static_cast<std::int64_t>(data.points.size());
       const base::Pose X = compose(X_WM, row.X_BF);
-      for (const glm::dvec3& p : mesh.vertices) add_point(data, transform(X, glm::dvec2{p.x, p.y}), X.z + p.z);
+      const bool is_own = mover != world::kNone && world_.movers[mover].model == row.model;
+      const world::Stretch stretch = is_own ? *world::stretch_of(world_, mover) : world::Stretch{};
+      for (const glm::dvec3& vertex : mesh.vertices) {
+        const glm::dvec3 p = stretch(vertex);
+        add_point(data, transform(X, glm::dvec2{p.x, p.y}), X.z + p.z);
+      }
       for (std::size_t i = 0; i + 2 < mesh.corners.size(); i += 3) {
         data.polygons.push_back({first + mesh.corners[i], first + mesh.corners[i + 1], first + mesh.corners[i + 2]});
         add_cell(row.model, mesh);

@@ -33,11 +33,11 @@ OriginalShape original_of(const World& world, std::uint32_t row) {
 /// The rule of sizes: the ratio first, so that a box gets exactly its new size.
 double stretched(double value, double from, double to) { return from == to || from <= 0.0 ? value : value / from * to; }
 
-void stretch(std::vector<Segment>& outline, const glm::dvec3& from, const glm::dvec3& to) {
+void stretch(std::vector<Segment>& outline, const Stretch& by) {
   for (Segment& side : outline) {
-    for (glm::dvec2* const p : {&side.a, &side.b}) *p = {stretched(p->x, from.x, to.x), stretched(p->y, from.y, to.y)};
-    side.z_min = stretched(side.z_min, from.z, to.z);
-    side.z_max = stretched(side.z_max, from.z, to.z);
+    const glm::dvec3 low = by({side.a, side.z_min}), high = by({side.b, side.z_max});
+    side.a = low, side.b = high;
+    side.z_min = low.z, side.z_max = high.z;
   }
 }
 
@@ -47,7 +47,7 @@ std::vector<Segment> scaled(const std::vector<Segment>& outline, const Pose& X_M
   if (from == to) return outline;
   std::vector<Segment> local, placed;
   place_outline(outline, inverse(X_MB), surface, local);
-  stretch(local, from, to);
+  stretch(local, {from, to});
   place_outline(local, X_MB, surface, placed);
   return placed;
 }
@@ -57,7 +57,7 @@ std::vector<Segment> outline_of(const World& world, const Mover& mover, const Ch
   const OriginalShape& own = now.original;
   if (now.shape == kNone) return scaled(own.outline, mover.X_MB, own.surface, own.size, now.size);
   std::vector<Segment> local = world.shapes[now.shape].outline, placed;
-  stretch(local, world.shapes[now.shape].size, now.size);
+  stretch(local, {world.shapes[now.shape].size, now.size});
   place_outline(local, mover.X_MB, own.surface, placed);
   return placed;
 }
@@ -132,8 +132,29 @@ bool use_shape(World& world, std::uint32_t row, const ChangedShape& now) {
   return now.shape != before.shape || now.size != before.size;
 }
 
+/// Triangles of the meshes of models, by row.
+std::map<std::uint32_t, std::size_t> triangles_of_models(const World& world) {
+  std::map<std::uint32_t, std::size_t> triangles;
+  for (const MeshModel& row : world.mesh_models)
+    if (world.models[row.model].mover != kNone) triangles[row.model] = world.meshes[row.mesh].corners.size() / 3;
+  return triangles;
+}
+
 std::size_t sides_of(const World& world, const ChangedShape& shape) {
   return shape.shape == kNone ? shape.original.outline.size() : world.shapes[shape.shape].outline.size();
+}
+
+/// Returns the sides of all changed movers, and the triangles of those whose meshes have another size.
+std::size_t changed_sides(const World& world, std::uint32_t mover, const ChangedShape& now) {
+  const std::map<std::uint32_t, std::size_t> triangles = triangles_of_models(world);
+  const auto count = [&](std::uint32_t row, const ChangedShape& shape) {
+    const auto mesh = triangles.find(world.movers[row].model);
+    const bool scaled = shape.shape == kNone && shape.size != shape.original.size && mesh != triangles.end();
+    return sides_of(world, shape) + (scaled ? mesh->second : 0);
+  };
+  std::size_t sides = count(mover, now);
+  for (const auto& [row, other] : world.changed_shapes) sides += row == mover ? 0 : count(row, other);
+  return sides;
 }
 
 }  // namespace
@@ -167,16 +188,27 @@ void check_change(const World& world, std::uint32_t mover, const ShapeChange& ch
                          base::kMostShapeSize));
     if (sides_of(world, now) == 0) refuse("it has no outline of its own to scale; give a shape, too");
   }
-  std::size_t sides = sides_of(world, now);
-  for (const auto& [row, other] : world.changed_shapes) sides += row == mover ? 0 : sides_of(world, other);
-  if (sides > kMostChangedSides)
-    refuse(fmt::format("changed objects would have {} sides together; expected at most {}", sides, kMostChangedSides));
+  if (const std::size_t sides = changed_sides(world, mover, now); sides > kMostChangedSides)
+    refuse(fmt::format(
+        "changed objects would have {} sides, and triangles of scaled meshes, together; expected at most {}", sides,
+        kMostChangedSides));
 }
 
 bool has_own_shape(const World& world, std::uint32_t mover) {
   const auto found = world.changed_shapes.find(mover);
   return found == world.changed_shapes.end() ||
          (found->second.shape == kNone && found->second.size == found->second.original.size);
+}
+
+glm::dvec3 Stretch::operator()(const glm::dvec3& p) const {
+  return {stretched(p.x, from.x, to.x), stretched(p.y, from.y, to.y), stretched(p.z, from.z, to.z)};
+}
+
+std::optional<Stretch> stretch_of(const World& world, std::uint32_t mover) {
+  const auto found = world.changed_shapes.find(mover);
+  if (found == world.changed_shapes.end()) return Stretch{};
+  if (found->second.shape != kNone) return {};
+  return Stretch{found->second.original.size, found->second.size};
 }
 
 bool change_shape(World& world, std::uint32_t mover, const ShapeChange& change) {

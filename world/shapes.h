@@ -4,9 +4,9 @@
 //   change_shape(world, mover, {.shape = "crate", .color = 0xFFFF0000u});
 //   change_shape(world, mover, {.shape = "original"});   // with its original size and colour
 //
-// Only the mover's own outline changes; what it carries keeps its place. A shape replaces the outline, about the
-// model's `origin`, with the height ranges, size and colour of the shape. A size scales the outline: the ratio of the
-// sizes is exact for boxes, and rounded for others.
+// Only the mover's own outline changes; what it carries keeps its place. A shape replaces the outline, and the mesh,
+// about the model's `origin`, with the height ranges, size and colour of the shape. A size scales the outline and the
+// mesh: the ratio of the sizes is exact for boxes, and rounded for others.
 
 #include <cstdint>
 #include <optional>
@@ -22,7 +22,7 @@ namespace sf::world {
 
 inline constexpr std::size_t kMostShapes = 200;                 ///< of one world
 inline constexpr std::size_t kMostShapeSides = 10'000;          ///< of one shape
-inline constexpr std::size_t kMostChangedSides = 2'000'000;     ///< of all movers with changed shapes
+inline constexpr std::size_t kMostChangedSides = 2'000'000;     ///< and triangles, of all movers with changed shapes
 inline constexpr std::string_view kOriginalShape = "original";  ///< name of each object's own shape
 
 /// What to change; the rest remains. A new shape brings its own size and colour.
@@ -46,6 +46,16 @@ void check_change(const World& world, std::uint32_t mover, const ShapeChange& ch
 
 /// Returns false for a mover that was given another shape or size than in the file.
 bool has_own_shape(const World& world, std::uint32_t mover);
+
+/// Change of the size of an outline or mesh, about the origin of its frame.
+struct Stretch {
+  glm::dvec3 from{}, to{};  ///< [m]
+
+  bool any() const { return from != to; }
+  glm::dvec3 operator()(const glm::dvec3& p) const;
+};
+/// Returns how the mover's own mesh was stretched since the world was loaded, or nullopt if it has another shape.
+std::optional<Stretch> stretch_of(const World& world, std::uint32_t mover);
 
 /// Changes a mover in the world's tables: body, radius, magnets, fiducials, and the model's size and colour. Does not
 /// update extent and hash. Tables built from the world must be updated: farm::Farm::update_outlines,

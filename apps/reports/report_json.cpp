@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 
+#include "apps/reports/mesh_report.h"
 #include "apps/reports/rate_warnings.h"
 #include "apps/reports/report.h"
 #include "apps/reports/robot_report.h"
@@ -248,6 +250,39 @@ std::string device_list_json(const gpu::DeviceList& list) {
   return indented(json);
 }
 
+namespace {
+
+Json meshes_json(const world::World& world) {
+  Json rows = Json::array();
+  const std::vector<std::optional<MeshReport>> reports = mesh_reports(world);
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    rows.push_back({{"file", world.meshes[i].file}, {"triangles", world.meshes[i].corners.size() / 3}});
+    if (!reports[i]) continue;
+    const auto add = [&](const char* name, const MeshReport::Faults& faults) {
+      rows.back()[name] = Json{{"count", faults.count}, {"first_triangle", faults.first}};
+    };
+    rows.back().update(Json{{"bodies", reports[i]->bodies}, {"closed_bodies", reports[i]->closed}});
+    add("edges_of_one_triangle", reports[i]->single);
+    add("edges_of_three_or_more", reports[i]->shared);
+    add("repeated_triangles", reports[i]->repeated);
+  }
+  return rows;
+}
+
+Json terrain_json(const world::World& world) {
+  Json rows = Json::array();
+  for (const world::Terrain& terrain : world.terrain) {
+    const auto [low, high] = std::ranges::minmax(terrain.heights);
+    rows.push_back({{"file", terrain.file},
+                    {"points", {terrain.columns, terrain.rows}},
+                    {"size_m", {(terrain.columns - 1) * terrain.cell.x, (terrain.rows - 1) * terrain.cell.y}},
+                    {"heights_m", {low, high}}});
+  }
+  return rows;
+}
+
+}  // namespace
+
 std::string world_report_json(const world::World& world, const sensors::SensorSet& sensor_set) {
   Json sensors = Json::object(), rates = Json::object();
   for (const sensors::SensorType* type : sensors::sensor_types()) {
@@ -274,6 +309,8 @@ std::string world_report_json(const world::World& world, const sensors::SensorSe
                    {"meshes", world.meshes.size()},
                    {"mesh_triangles", triangles_of(world.meshes)},
                    {"mesh_models", world.mesh_models.size()},
+                   {"mesh_files", meshes_json(world)},
+                   {"terrain", terrain_json(world)},
                    {"magnets", count_magnets(world)},
                    {"magnet_cutoff_m", field.cutoff_m},
                    {"earth_field_T", {world.earth_field.x, world.earth_field.y, world.earth_field.z}},

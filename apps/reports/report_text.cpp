@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/reports/mesh_report.h"
 #include "apps/reports/rate_warnings.h"
 #include "apps/reports/report.h"
 #include "apps/reports/text.h"
@@ -129,9 +130,7 @@ std::string world_report_text(const world::World& world, const sensors::SensorSe
               ? row("sensors", "none")
               : sensors_text(sensor_set) + rates_text(world, sensor_set) + accuracy_text(world, sensor_set);
   text += row("wall segments", world.walls.size());
-  if (!world.meshes.empty())
-    text += row("meshes", "{} with {}, in {}", world.meshes.size(), counted(triangles_of(world.meshes), "triangle"),
-                counted(world.mesh_models.size(), "model"));
+  text += surfaces_text(world);
   text += paint_text(world) + magnets_text(world) + earth_text(world) + street_text(world);
   if (!world.shapes.empty()) text += row("shapes", world.shapes.size());
   text += row("extent", "x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max);

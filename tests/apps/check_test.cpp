@@ -40,6 +40,30 @@ std::string small_world(const Folder& folder) {
 
 }  // namespace
 
+/// What spatial sensors see: whether meshes are closed, or which triangles keep them open, and the terrain.
+TEST(Check, MeshesAndTerrainAreExamined) {
+  const Folder folder;
+  folder.write("closed.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  folder.write("fan.obj",
+               "v 4 -1 0\nv 4 1 0\nv 4 0 2\nv 3 0 2\nv 5 0 2\nf 1 1 2\nf 1 2 3\nf 1 2 4\nf 1 2 5\nf 1 2 3\n");
+  const std::string world = folder.write("w.world", "model( mesh \"closed.obj\" )\nmodel( mesh \"fan.obj\" )\n");
+  const Outcome text = run_program({"check", world});
+  expect_in("closed.obj: 4 triangles, closed: back faces are hidden", text.out);
+  expect_in(
+      "fan.obj: 4 triangles, not closed, seen from both sides: 4 edges of one triangle (first: triangle 2), 1 edge of "
+      "three or more (first: triangle 1), 1 triangle with the corners of another (first: triangle 4)",
+      text.out);
+  expect_in("fan.obj are left out, since their area is 0; the first is number 1", text.out + text.err);
+  const Json facts(run_program({"check", world, "--json"}).out);
+  EXPECT_EQ(facts.number("/mesh_files/0/closed_bodies"), 1);
+  EXPECT_EQ(facts.number("/mesh_files/1/closed_bodies"), 0);
+  EXPECT_EQ(facts.number("/mesh_files/1/edges_of_one_triangle/count"), 4);
+  EXPECT_EQ(facts.number("/mesh_files/1/edges_of_three_or_more/first_triangle"), 1);
+  EXPECT_EQ(facts.size("/terrain"), 0u);
+  const std::string hills = run_program({"check", SF_SOURCE_DIR "/worlds/terrain.world"}).out;
+  expect_in("terrain/hills.png: 129 x 129 points, 128 x 128 m, heights from", hills);
+}
+
 /// A noisy sensor has no bound, but states the bound that it would have without noise.
 TEST(Check, NoisySensorsHaveNoBound) {
   const Folder folder;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "scene/trapezoids.h"
 #include "tests/scene/meshes.h"
@@ -121,6 +122,22 @@ TEST(Solids, StackedBlocks) {
   const Instance instance{&tree, {}, true};
   const SpatialScan scan = cast({glm::dmat3(1.0), {0.0, 0.2, 5.0}}, {{0, 0, -1}}, 10.0, {{&instance, 1}, false});
   EXPECT_NEAR(scan.ranges[0], 2.0, kRangeError);
+}
+
+/// Outlines in any order, as those of pictures, have a top with holes, and islands in these. Open ones have none.
+TEST(Solids, OutlinesInAnyOrder) {
+  auto segments = square(-3, 3, 0, 1);
+  for (auto& s : square(-2, 2, 0, 1)) segments.push_back(s), std::swap(segments.back().a, segments.back().b);
+  for (const auto& s : square(-1, 1, 0, 1)) segments.push_back(s);
+  std::mt19937 random(1);
+  std::ranges::shuffle(segments, random);
+  const SurfaceTree tree = build_tree(mesh_of(segments, true));
+  const Instance instance{&tree, {}, true};
+  for (const auto& [x, range] : {std::pair{2.5, 4.0}, {1.5, 5.0}, {0.5, 4.0}, {3.5, 5.0}})
+    EXPECT_NEAR(cast({glm::dmat3(1.0), {x, 0.3, 5.0}}, {{0, 0, -1}}, 10.0, {{&instance, 1}, true}).ranges[0], range,
+                kRangeError);
+  segments.pop_back();
+  EXPECT_EQ(mesh_of(segments, true).faces.size(), 11u);
 }
 
 }  // namespace

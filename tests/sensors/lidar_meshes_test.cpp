@@ -12,6 +12,7 @@
 #include "robots/kinematics.h"
 #include "sensors/lidar.h"
 #include "sensors/mover_trails.h"
+#include "sensors/sensor_set.h"
 #include "sensors/spatial_scene.h"
 #include "tests/folder.h"
 #include "tests/refusal.h"
@@ -65,6 +66,28 @@ TEST_F(LidarMeshes, ABoxIsABox) {
       return hit < meshes.models.size() && meshes.models[hit].mover == 0;
     })) << "its own robot";
   }
+}
+
+/// So is a picture of a box, seen from above too: turned, on a robot, or as a ROS map.
+TEST_F(LidarMeshes, APictureIsABox) {
+  write("box.pbm", "P1\n4 4\n0000\n0110\n0110\n0000\n");
+  write("box.pgm", "P2 2 2 255 0 0 0 0\n");
+  write("map.yaml",
+        "image: box.pgm\nresolution: 1.0\norigin: [3, -1, 0.3]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n");
+  const base::Pose map = base::compose({3.0, -1.0, 0.0, 0.3}, {1.0, 1.0, 0.0, 0.0});
+  const auto scene = [&](const std::string& picture, const std::string& third) {
+    return world_of("model( pose [1 3 0.5 25] size [1 2 0.8] " + picture + " )\n" +
+                    "define robot position( size [0.4 0.3 0.2] " + picture + " )\n" + third +
+                    "position( name \"r1\" lidar( channels 40 fov_v [-85 5] columns 180 range [0 20] "
+                    "pose [0 0 3 0] size [0 0 0] ) )\nrobot( pose [1.5 -1 0.2 50] )\n");
+  };
+  const world::World pictures = scene("bitmap \"" + path("box.pbm") + "\"", "include \"" + path("map.yaml") + "\"\n"),
+                     solids = scene("", fmt::format("model( pose [{} {} 0 {}] size [2 2 2] )\n", map.x, map.y,
+                                                    map.yaw * 180.0 / M_PI));
+  farm::Farm mine(pictures, host_device(), {.noise = false, .threads = 1});
+  farm::Farm theirs(solids, host_device(), {.noise = false, .threads = 1});
+  const base::ReadingBlock a = sense(mine, pictures), b = sense(theirs, solids);
+  for (std::size_t i = 0; i < a.values.size(); ++i) ASSERT_NEAR(a.values[i], b.values[i], 1e-12) << i;
 }
 
 /// Intensities are those of each face's material, where its model states no reflectance: in exact scans, by the
@@ -193,6 +216,63 @@ TEST_F(LidarMeshes, ChangedShapesAreSolids) {
   EXPECT_STREQ(seen(), "solid");
   world::change_shape(world, 2, {.shape = "original"});
   EXPECT_STREQ(seen(), "mesh");
+}
+
+/// An object that takes on another size is seen as its mesh in that size, as the file could have stated it; changed
+/// again, and with its own size, too. Its outline alone, a box, would be seen otherwise.
+TEST_F(LidarMeshes, ChangedSizesScaleMeshes) {
+  write("tent.obj",
+        "mtllib m.mtl\nusemtl dark\nv -0.5 -0.5 0\nv 0.5 -0.5 0\nv 0.5 0.5 0\nv -0.5 0.5 0\nv 0.1 0 1\n"
+        "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 1 4 3 2\n");
+  write("m.mtl", "newmtl dark\nKd 0.1\n");
+  const auto world_with = [&](const std::string& size) {
+    return world_of("model( name \"tag1\" pose [2 0.3 0.1 20] origin [0.1 0.2 0 30] size " + size + " mesh \"" +
+                    path("tent.obj") + "\" model( size [0.1 0.1 1.5] mesh \"" + path("tent.obj") +
+                    "\" ) )\nposition( name \"r1\" lidar( channels 24 fov_v [-40 40] columns 240 range [0 20] "
+                    "intensity 1 size [0 0 1] ) )\n");
+  };
+  const std::string file = "[1 1 1]";
+  world::World world = world_with(file);
+  farm::Farm farm(world, host_device(), {.noise = false, .threads = 1});
+  const auto scan = [](farm::Farm& of) {
+    const base::ReadingBlock r = of.sense(1, sensors::kLidar, 0, {});
+    return std::vector<double>(r.values.begin(), r.values.end());
+  };
+  const auto as_written = [&](const std::string& size) {
+    const world::World written = world_with(size);
+    farm::Farm other(written, host_device(), {.noise = false, .threads = 1});
+    return scan(other);
+  };
+  const std::vector<double> before = scan(farm);
+  for (const auto& [size, text] :
+       {std::pair{glm::dvec3{0.7, 1.3, 0.4}, "[0.7 1.3 0.4]"}, {glm::dvec3{2.0, 0.1, 0.9}, "[2 0.1 0.9]"}}) {
+    world::change_shape(world, 0, {.size = size});
+    farm.update_outlines();
+    const std::vector<double> found = scan(farm), expected = as_written(text);
+    for (std::size_t i = 0; i < found.size(); ++i) ASSERT_NEAR(found[i], expected[i], 1e-12) << text << i;
+    EXPECT_NE(found, before);
+  }
+  world::change_shape(world, 0, {.shape = "original"});
+  farm.update_outlines();
+  EXPECT_EQ(scan(farm), before);
+
+  world.meshes[0].corners.resize(3 * world::kMostChangedSides);
+  expect_in("2000004 sides, and triangles of scaled meshes, together; expected at most 2000000",
+            refusal_of([&] { world::change_shape(world, 0, {.size = glm::dvec3{2.0}}); }));
+}
+
+/// Triangles in all places are bounded where sensors are read, before anything is built from them: `check` refuses what
+/// `sense` refuses. Worlds without spatial sensors may have more.
+TEST_F(LidarMeshes, TrianglesInAllPlacesAreBounded) {
+  world::World world = scene(true);
+  world.meshes[0].corners.resize(3u << 20), world.mesh_models.resize(2047, world.mesh_models[0]);
+  for (world::MeshModel& row : world.mesh_models) row = {0, 0, {}};
+  EXPECT_NO_THROW(sensors::SensorSet{world});
+  world.mesh_models.push_back({0, 0, {}});
+  expect_in("has 2147483648 triangles of meshes in all their places; expected fewer than 2147483648",
+            refusal_of([&] { sensors::SensorSet{world}; }));
+  world.movers[0].sensors.clear(), world.movers[1].sensors.clear();
+  EXPECT_NO_THROW(sensors::SensorSet{world});
 }
 
 /// Far from the origin, and beyond a lidar's range, where meshes are not listed.

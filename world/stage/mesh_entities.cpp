@@ -53,21 +53,25 @@ void require_within(const BuildState& b, const Entity& entity, const Mesh& mesh)
 /// Leaves out triangles whose corners are on one line, as at the poles of many spheres.
 /// @param materials per triangle, or empty
 void leave_out_flat(BuildState& b, const Entity& entity, Mesh& mesh, std::vector<std::uint32_t>& materials) {
-  std::size_t kept = 0;
+  std::size_t kept = 0, flat = 0, first = 0;  // number of the first, from 1
   for (std::size_t i = 0; i < mesh.corners.size(); i += 3) {
     const auto at = [&](std::size_t k) { return mesh.vertices[mesh.corners[i + k]]; };
     const glm::dvec3 normal = glm::cross(at(1) - at(0), at(2) - at(0));
-    if (!(glm::dot(normal, normal) > 0.0)) continue;
+    if (!(glm::dot(normal, normal) > 0.0)) {
+      if (flat++ == 0) first = i / 3 + 1;
+      continue;
+    }
     if (!materials.empty()) materials[kept / 3] = materials[i / 3];
     for (std::size_t k = 0; k < 3; ++k) mesh.corners[kept++] = mesh.corners[i + k];
   }
   if (!materials.empty()) materials.resize(kept / 3);
-  const std::size_t flat = (mesh.corners.size() - kept) / 3;
   mesh.corners.resize(kept);
   const SourceLocation at = location_of(entity, "mesh");
   if (kept == 0) fail(b.context, at, "all triangles of this mesh have an area of 0");
   if (flat > 0)
-    warn(b.context, at, fmt::format("{} triangles of {} have an area of 0 and are left out", flat, mesh.file));
+    warn(b.context, at,
+         fmt::format("{} of {} triangles in {} are left out, since their area is 0; the first is number {}", flat,
+                     flat + kept / 3, mesh.file, first));
 }
 
 }  // namespace
