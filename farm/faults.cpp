@@ -12,6 +12,8 @@
 #include "base/random.h"
 #include "base/suggest.h"
 #include "base/time.h"
+#include "farm/own_noise.h"
+#include "sensors/camera.h"
 
 namespace sf::farm {
 
@@ -191,18 +193,19 @@ Faults::Rule Faults::rule_of(std::uint32_t k, const Group& group, const sensors:
   const ColumnPlace column = column_of(fault, type, row, fault.column);
   rule.offset = column.offset, rule.width = column.width, rule.whole = column.whole;
   rule.is_range = column.is_range(row);
+  rule.is_color = type.id == sensors::kCamera && column.name == "rgb";
   // Colours do not depend on an echo; all else of a beam does.
   const bool second = column.name.starts_with("second_");
   const ColumnPlace range = column_of(fault, type, row, second ? "second_range_m" : "");
   if (range.is_range(row) && !column.whole) rule.range = range.offset;
   if (fault.kind != FaultKind::noise) return rule;
-  if (fault.multiplies && (column.offset != 0 || !(row.sigma > 0.0 && std::isfinite(row.sigma))))
+  const double sigma = own_noise(group, row, column.offset);
+  if (fault.multiplies && !(sigma > 0.0 && std::isfinite(sigma)))
     refuse_fault(fault,
                  fmt::format("the noise of column '{}' of '{}' cannot be multiplied: its standard deviation is {}; "
                              "expected sigma, the standard deviation to add",
-                             column.name, row.name, column.offset == 0 && row.sigma == 0.0 ? "0" : "not stated"));
-  rule.sigma =
-      fault.multiplies ? (noise_ ? row.sigma * std::sqrt(fault.amount * fault.amount - 1.0) : 0.0) : fault.amount;
+                             column.name, row.name, sigma == 0.0 ? "0" : "not stated"));
+  rule.sigma = fault.multiplies ? (noise_ ? sigma * std::sqrt(fault.amount * fault.amount - 1.0) : 0.0) : fault.amount;
   return rule;
 }
 
@@ -251,6 +254,17 @@ double Faults::altered(const Rule& rule, double value, const base::ReadingBlock&
   }
 }
 
+double Faults::altered_color(const Rule& rule, double color, const base::ReadingBlock& reading,
+                             std::uint32_t index) const {
+  const auto before = static_cast<std::uint32_t>(color);
+  std::uint32_t after = 0;
+  for (std::uint32_t channel = 0; channel < 3; ++channel) {
+    const double value = altered(rule, before >> (16 - 8 * channel) & 255u, reading, 3 * index + channel);
+    after = after << 8 | static_cast<std::uint32_t>(std::clamp(std::round(value), 0.0, 255.0));
+  }
+  return after;
+}
+
 /// @return whether a value was altered
 bool Faults::alter_column(const Rule& rule, const base::ReadingBlock& reading, Target& target) const {
   const Fault& fault = faults_[rule.fault];
@@ -262,7 +276,8 @@ bool Faults::alter_column(const Rule& rule, const base::ReadingBlock& reading, T
       double& value = target.values[k];
       if (std::isnan(value) || !echo) continue;
       const double before = value;
-      value = altered(rule, value, reading, static_cast<std::uint32_t>(k));
+      const auto index = static_cast<std::uint32_t>(k);
+      value = rule.is_color ? altered_color(rule, value, reading, index) : altered(rule, value, reading, index);
       if (rule.is_range) value = std::clamp(value, target.limits.min, target.limits.max);
       if (rule.whole) value = std::clamp(std::round(value), 0.0, 4294967295.0);
       any = any || value != before;

@@ -59,6 +59,7 @@ class Faults {
     std::uint32_t other = 0;                  ///< swap: offset of the other column
     double sigma = 0.0;                       ///< noise: deviation to add
     bool whole = false;                       ///< the column is a count
+    bool is_color = false;                    ///< 0xRRGGBB, altered channel by channel
     bool is_range = false;                    ///< values stay within the sensor's limits
     std::optional<std::uint32_t> range = {};  ///< offset of the range whose beams without an echo stay
     // Stuck: the last reading that was not affected.
@@ -86,6 +87,7 @@ class Faults {
   void swap(const Rule& rule, base::ReadingBlock& reading, Target& target) const;
   bool hold(Rule& rule, base::ReadingBlock& reading, Target& target) const;
   double altered(const Rule& rule, double value, const base::ReadingBlock& reading, std::uint32_t index) const;
+  double altered_color(const Rule& rule, double color, const base::ReadingBlock& reading, std::uint32_t index) const;
   bool note(const base::ReadingBlock& reading, std::uint16_t kinds);
   base::RandomKey key(const Rule& rule, const base::ReadingBlock& reading) const;
 

@@ -30,19 +30,16 @@ ReadingTable::ReadingTable(const sensors::SensorSet::Group& group, double interv
     widths_.push_back(static_cast<std::uint32_t>(sensors::element_width(*group.type, row)));
     view_.columns = std::max<std::size_t>(view_.columns, widths_.back());
     robots_.push_back(row.mover);
+    if (group.type->id == sensors::kCamera)
+      image_sizes_.insert(image_sizes_.end(), {row.across, row.elements / row.across});
   }
-  const auto is_like_first = [&](const auto& row) {
-    return row.across == rows.front().across && row.elements == rows.front().elements;
-  };
-  if (group.type->id == sensors::kCamera && std::ranges::all_of(rows, is_like_first))
-    view_.image_width = rows.front().across;
   view_.type = group.type->name;
   view_.sensors = rows.size();
   times_.resize(rows.size()), bounds_.resize(rows.size()), bound_without_noise_.resize(rows.size());
   sigma_.resize(rows.size()), fresh_.resize(rows.size()), flagged_.resize(rows.size());
   flags_.resize(rows.size() * view_.elements);
   for (std::size_t row = 0; row < rows.size(); ++row) clear(row);
-  view_.widths = widths_;
+  view_.widths = widths_, view_.image_sizes = image_sizes_;
   view_.robots = robots_, view_.times = times_, view_.fresh = fresh_, view_.flags = flags_;
   view_.bounds = bounds_, view_.bound_without_noise = bound_without_noise_, view_.sigma = sigma_;
 }

@@ -54,7 +54,7 @@ class ReadingTable {
   sensorfarm::Readings view_;
   std::vector<double> values_;
   std::vector<std::uint32_t> hits_;
-  std::vector<std::uint32_t> robots_, widths_;
+  std::vector<std::uint32_t> robots_, widths_, image_sizes_;
   std::vector<double> times_;
   std::vector<double> bounds_;
   std::vector<double> bound_without_noise_;

@@ -5,7 +5,7 @@
 namespace sf::netio {
 
 Receiver::Receiver(const ReceiverOptions& options)
-    : headerless_(options.headerless), inspect_(options.inspect), read_(options.read) {
+    : headerless_(options.headerless), inspect_(options.inspect), read_(options.read), read_file_(options.read_file) {
   SF_CHECK(inspect_ != nullptr && read_ != nullptr, "a receiver without a judge or a reader");
   SF_CHECK(!options.key || !headerless_, "signatures without headers");
   for (const ReceiverStream& stream : options.streams) {
@@ -34,7 +34,10 @@ PartStatus Receiver::accept(std::size_t i, std::span<const std::uint8_t> bytes, 
   if (info.status == PacketStatus::accepted) info = inspect_(i, header, payload);
   counts_.packets.add(info.status);
   if (info.status != PacketStatus::accepted) return PartStatus::rejected;
-  if (info.parts == 0) return PartStatus::incomplete;
+  if (info.parts == 0) {
+    if (read_file_) read_file_(i, header, payload);
+    return PartStatus::incomplete;
+  }
 
   if (headerless_) synthesise_header(stream, info.part, now, header);
   const ReadingPart part{header.sequence, info.part, info.parts, header.time, header.accuracy};

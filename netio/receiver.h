@@ -26,6 +26,9 @@ namespace sf::netio {
 using PayloadReader = std::function<void(std::size_t stream, const Header&, std::span<const std::uint8_t> payload,
                                          std::span<double> values)>;
 
+/// Receives a part of a file, a payload that the inspector has accepted with `parts` 0.
+using FilePartReader = std::function<void(std::size_t stream, const Header&, std::span<const std::uint8_t> payload)>;
+
 struct ReceiverStream {
   StreamSpec spec;
   std::size_t value_count = 1;  ///< number of values in a complete reading
@@ -36,6 +39,7 @@ struct ReceiverOptions {
   bool headerless = false;              ///< datagrams contain only payloads; a part out of order begins a new reading
   PayloadInspector inspect;             ///< not empty; receives only payloads of the stream's robot and sensor
   PayloadReader read;                   ///< not empty
+  FilePartReader read_file;             ///< empty: parts of files are dropped
   std::optional<SigningKey> key;        ///< must sign all packets; not available without headers
 };
 
@@ -83,6 +87,7 @@ class Receiver {
   std::optional<SessionToken> farm_;
   PayloadInspector inspect_;
   PayloadReader read_;
+  FilePartReader read_file_;
   ReceiverCounts counts_;
 };
 

@@ -1,5 +1,7 @@
 #include "netio/sequence_tracker.h"
 
+#include <algorithm>
+
 namespace sf::netio {
 
 namespace {
@@ -9,6 +11,7 @@ constexpr std::uint64_t kHistory = 64;
 }  // namespace
 
 void count_arrival(SequenceTracker& tracker, std::uint64_t index) {
+  tracker.first = tracker.next == 0 ? index : std::min(tracker.first, index);
   if (index >= tracker.next) {
     const std::uint64_t ahead = index + 1 - tracker.next;
     tracker.recent = (ahead >= kHistory ? 0 : tracker.recent << ahead) | 1u;

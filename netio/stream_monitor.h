@@ -60,7 +60,7 @@ struct StreamSummary {
   PacketCounts counts;             ///< all datagrams by status
   std::uint64_t stale_states = 0;  ///< good datagrams computed from a stale state of the robot
   std::int64_t oldest_state = 0;   ///< [ns] largest age of a state behind a good datagram
-  std::uint64_t lost = 0;          ///< datagrams missing from sequences from 0; see SequenceTracker
+  std::uint64_t lost = 0;          ///< datagrams missing after the first one of each stream; see SequenceTracker
   std::uint64_t duplicates = 0;
   std::uint64_t reordered = 0;
   std::uint64_t ports = 0;

@@ -425,7 +425,7 @@ void add_readings(py::class_<PySimulation>& c) {
   c.def("readings", &values, type,
         "(sensors, elements[, columns]): the newest reading of each sensor; shorter ones end in NaN.")
       .def(
-          "_image_width", [](const PySimulation& s, Text t) { return s.farm.readings(t).image_width; }, type)
+          "_image_sizes", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).image_sizes); }, type)
       .def(
           "_widths", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).widths); }, type)
       .def("hits", &hits, type, "(sensors, beams or pixels): number of the model that each one met, FLOOR or NONE.")

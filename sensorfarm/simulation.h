@@ -110,8 +110,8 @@ struct Readings {
   std::span<const double> sigma;                ///< per row, as in Reading
   std::span<const std::uint8_t> fresh;          ///< per row: 1 if it was delivered in the last step
   std::span<const std::uint8_t> flags;          ///< sensors * elements: 0 if a stated bound holds (docs/accuracy.md)
-  std::size_t image_width = 0;  ///< [px] of cameras, whose elements are pixels row by row from the top left; 0: no
-                                ///< cameras, or images of different sizes
+  std::span<const std::uint32_t> image_sizes;   ///< two per row, of cameras: width and height [px]. Their elements are
+                                                ///< pixels row by row from the top left. Empty for other types
 
   std::span<const double> row(std::size_t i) const { return {values + i * stride, elements * columns}; }
   std::span<const std::uint32_t> hits_of(std::size_t i) const { return {hits + i * hit_stride, elements}; }

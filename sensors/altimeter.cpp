@@ -2,18 +2,12 @@
 
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
-#include "sensors/triad_backend.h"
 
 namespace sf::sensors {
 
 namespace {
 
 constexpr double kMostHeight = 1e6;  // [m]
-
-struct Altimeter {
-  TriadInstrument instrument;
-  double datum = 0.0;  ///< [m] height in the world that reads 0
-};
 
 class Altimeters : public TriadBackend {
  public:

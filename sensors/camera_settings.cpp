@@ -54,7 +54,7 @@ void read_distortion(const world::Sensor& sensor, base::Lens& lens) {
 /// a pinhole.
 void read_focal(const world::Sensor& sensor, CameraSettings& s) {
   // Stage also gives the vertical field of view, which follows from the resolution.
-  const auto fov = tuple(sensor, "fov", 1, "the horizontal field of view");
+  const auto fov = tuple(sensor, "fov", 1, "a field of view, or as in Stage [horizontal vertical]");
   if (const auto focal = tuple(sensor, "focal", 1, "[fx fy], or one number for both [px]")) {
     if (fov) refuse(sensor, "focal", "'fov' and 'focal'; expected one of them");
     s.lens.focal = {focal->front(), focal->back()};

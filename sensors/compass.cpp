@@ -35,7 +35,11 @@ class Compasses : public TriadBackend {
   const std::vector<Compass>& settings_;  ///< per row
 };
 
-ParsedSensors parse_compasses(const world::World& world) { return parse_each(world, compass_type, read_compass); }
+ParsedSensors parse_compasses(const world::World& world) {
+  return parse_each(world, compass_type, [&](const world::Sensor& sensor, SensorSpec& row) {
+    return read_compass(sensor, world.earth_field, row);
+  });
+}
 
 /// Reads a tuple of numbers, each of at most `most` either way.
 template <std::size_t kSize>
@@ -52,6 +56,21 @@ std::array<double, kSize> read_numbers(const world::Sensor& sensor, std::string_
   return numbers;
 }
 
+/// Returns the field of a compass [T]: that of the world, or as its own settings state.
+glm::dvec3 read_field(const world::Sensor& sensor, const glm::dvec3& earth) {
+  const bool has_earth = earth != glm::dvec3{};
+  if (has_earth && !find(sensor, "strength") && !find(sensor, "inclination") && !find(sensor, "declination"))
+    return earth;
+  const double flat = base::hypot(earth.x, earth.y);
+  const double strength =
+      number(sensor, "strength", has_earth ? base::hypot(earth.x, earth.y, earth.z) : 5e-5, 0.0, kMostField);
+  const auto [down, level] = base::sin_cos(
+      angle(sensor, "inclination", has_earth ? base::atan2(-earth.z, flat) : M_PI / 3.0, -M_PI / 2.0, M_PI / 2.0));
+  const auto [east, north] =
+      base::sin_cos(angle(sensor, "declination", has_earth ? base::atan2(earth.x, earth.y) : 0.0, -M_PI, M_PI));
+  return strength * glm::dvec3{level * east, level * north, -down};
+}
+
 constexpr std::string_view kKeys[] = {"pose6",     "strength", "inclination",  "declination", "hard_iron",
                                       "soft_iron", "noise",    "bias",         "instability", "walk",
                                       "scale",     "step",     "misalignment", "range"};
@@ -62,12 +81,9 @@ constexpr PlainForm kForm{kCompass, "compass", kNumbers};
 
 }  // namespace
 
-Compass read_compass(const world::Sensor& sensor, SensorSpec& row) {
+Compass read_compass(const world::Sensor& sensor, const glm::dvec3& earth, SensorSpec& row) {
   Compass c{.instrument = read_instrument(sensor, number, kMostField, row)};
-  const double strength = number(sensor, "strength", 5e-5, 0.0, kMostField);
-  const auto [down, level] = base::sin_cos(angle(sensor, "inclination", M_PI / 3.0, -M_PI / 2.0, M_PI / 2.0));
-  const auto [east, north] = base::sin_cos(angle(sensor, "declination", 0.0, -M_PI, M_PI));
-  c.field_W = strength * glm::dvec3{level * east, level * north, -down};
+  c.field_W = read_field(sensor, earth);
   const auto hard = read_numbers<3>(sensor, "hard_iron", "[x y z] in tesla", kMostField);
   c.hard_iron = {hard[0], hard[1], hard[2]};
   const auto soft = read_numbers<6>(sensor, "soft_iron", "[xx yy zz xy xz yz]", 1.0);

@@ -24,8 +24,9 @@ struct Compass {
   glm::dmat3 soft_iron{1.0};   ///< the field in the sensor's frame is multiplied by it
 };
 
+/// @param earth field of the world [T], which each of the three settings of the field overrides; 0: none
 /// @throws base::InputError with file and line.
-Compass read_compass(const world::Sensor& sensor, SensorSpec& row);
+Compass read_compass(const world::Sensor& sensor, const glm::dvec3& earth, SensorSpec& row);
 
 extern const SensorType compass_type;
 

@@ -48,7 +48,9 @@ double scaled(const world::Sensor& sensor, std::string_view key, double fallback
               double unit, const std::string& name) {
   const world::Setting* setting = find(sensor, key);
   if (setting == nullptr) return fallback;
-  const double value = unit * numbers(sensor, *setting, 1, "a number").front();
+  const std::vector<double>& written = numbers(sensor, *setting, 1, "a number");
+  if (written.size() > 1) refuse(sensor, key, fmt::format("'{}' has {} numbers; expected one", key, written.size()));
+  const double value = unit * written.front();
   if (value >= least && value <= most) return value;
   refuse(sensor, key,
          fmt::format("'{}' is {:.10g}; expected {} to {}{}", key, value / unit, limit_text(least / unit, true),
@@ -101,10 +103,12 @@ std::size_t choice(const world::Sensor& sensor, std::string_view key, std::size_
   const world::Setting* setting = find(sensor, key);
   if (setting == nullptr) return fallback;
   const auto found = std::find(words.begin(), words.end(), setting->text);
-  if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+  if (found != words.end() && setting->numbers.empty()) return static_cast<std::size_t>(found - words.begin());
   std::string expected;
   for (const std::string_view word : words) expected += fmt::format("{}\"{}\"", expected.empty() ? "" : " or ", word);
-  refuse(sensor, key, fmt::format("'{}' is \"{}\"; expected {}", key, setting->text, expected));
+  refuse(sensor, key,
+         fmt::format("'{}' is \"{}\"{}; expected {}", key, setting->text,
+                     setting->numbers.empty() ? "" : " with numbers", expected));
 }
 
 std::optional<std::vector<double>> tuple(const world::Sensor& sensor, std::string_view key, std::size_t least,

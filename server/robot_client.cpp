@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/time.h"
 #include "control/own_dynamics.h"
+#include "control/stop_reason.h"
 #include "world/roads/roads.h"
 
 namespace sf::server {
@@ -277,6 +278,8 @@ RobotClientStats RobotClient::stats() const {
   stats.steps = steps_;
   stats.started = started_;
   stats.done = done();
+  if (!stats.done && command_.forward == 0.0 && command_.left == 0.0 && command_.turn == 0.0)
+    stats.stop_reason = control::stop_reason_of(*made_.controller);
   stats.answered = link_.last_answer().has_value();
   stats.link = link_.counts();
   const bool meets_others =

@@ -90,6 +90,7 @@ struct RobotClientStats {
   std::uint64_t steps = 0;  ///< of the controller
   bool started = true;      ///< no start signal was required, or it arrived
   bool done = false;        ///< as reported by the controller
+  std::string stop_reason;  ///< of the controller, if it stands still at the end; empty: it drives, or states none
   bool answered = false;    ///< a packet arrived from the farm
   bool listens = true;      ///< it has sensors and therefore expects packets; false if its controller needs no readings
                             ///< and it received states of others directly

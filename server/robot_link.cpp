@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "netio/own_end.h"
+#include "sensors/camera.h"
 #include "sensors/laser.h"
 #include "server/wire_ids.h"
 
@@ -61,6 +62,10 @@ std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::SensorSet& s
   std::vector<Stream> streams;
   for (const SensorStream& source : sensor_streams(sensor_set, layout, mover))
     if (source.type->read != nullptr) streams.push_back({source});
+  const auto cameras = sensor_set.settings_of<sensors::CameraSettings>(sensors::kCamera, mover);
+  for (Stream& stream : streams)
+    if (stream.source.type->id == sensors::kCamera && cameras[stream.source.row->sensor].rgb)
+      stream.camera.emplace(cameras[stream.source.row->sensor]);
   return streams;
 }
 
@@ -91,6 +96,9 @@ netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& layout, c
     part_is_stale_ = header.state.stated && header.state.stale;
     part_is_fused_ = header.fused;
     decode_payload(streams_[i].source, wire, header, payload, values);
+  };
+  receiver.read_file = [this](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
+    if (streams_[i].camera) streams_[i].camera->take_part(header.sequence, payload);
   };
   return receiver;
 }
@@ -225,6 +233,7 @@ void RobotLink::take(std::size_t tag, std::span<const std::uint8_t> bytes, std::
   last_answer_ = now;
   if (part_status != netio::PartStatus::complete) return;
   last_reading_ = now;
+  if (streams_[tag].camera) streams_[tag].camera->take_depths(*receiver_.newest(tag));
   ++streams_[tag].whole;
   streams_[tag].fused = part_is_fused_;
   stale_ += part_is_stale_ ? 1 : 0;
@@ -255,6 +264,8 @@ void RobotLink::handle_challenge(const netio::SessionToken& before) {
   next_request_ = 0;
   if (v2v_socket_.farm_session_token().session == before.session) return;
   receiver_.set_session(v2v_socket_.farm_session_token());
+  for (Stream& stream : streams_)
+    if (stream.camera) stream.camera->restart();
   clock_ = {};
 }
 
@@ -285,7 +296,7 @@ void state_bound(const netio::Accuracy& accuracy, double sigma, base::ReadingBlo
 std::span<RobotLink::Newest> RobotLink::readings() {
   newest_.clear();
   for (std::size_t i = 0; i < streams_.size(); ++i) {
-    const auto whole = receiver_.newest(i);
+    const auto whole = streams_[i].camera ? streams_[i].camera->newest() : receiver_.newest(i);
     if (!whole) continue;
     const SensorStream& source = streams_[i].source;
     Newest& newest = newest_.emplace_back();
@@ -304,9 +315,14 @@ std::span<RobotLink::Newest> RobotLink::readings() {
 
 LinkCounts RobotLink::counts() const {
   LinkCounts counts{
-      v2v_socket_.sent(), out_.counts(), in_.counts(), receiver_.counts(), v2v_socket_.counts(), 0, {}, stale_, {}};
+      v2v_socket_.sent(), out_.counts(), in_.counts(), receiver_.counts(), v2v_socket_.counts(), 0, {}, stale_, {}, {}};
   counts.socket_drops = port_listener_.socket_drops() + netio::socket_drops(v2v_socket_.socket());
-  for (const Stream& stream : streams_) counts.whole[std::string(stream.source.type->name)] += stream.whole;
+  for (const Stream& stream : streams_) {
+    counts.whole[std::string(stream.source.type->name)] += stream.whole;
+    if (!stream.camera) continue;
+    if (!counts.images) counts.images.emplace();
+    counts.images->whole += stream.camera->counts().whole, counts.images->invalid += stream.camera->counts().invalid;
+  }
   if (direct_) counts.direct = direct_->counts();
   return counts;
 }

@@ -18,6 +18,7 @@
 #include "netio/v2v_socket.h"
 #include "sensors/sensor_set.h"
 #include "server/own_reading.h"
+#include "server/received_camera.h"
 #include "server/sensor_streams.h"
 #include "server/stream_layout.h"
 #include "world/world.h"
@@ -43,6 +44,7 @@ struct LinkCounts {
   std::map<std::string, std::uint64_t> whole;  ///< complete readings, by type
   std::uint64_t stale = 0;  ///< readings computed from a state of the robot that the farm marked as stale
   std::optional<netio::DirectV2vCounts> direct;  ///< nullopt: no V2V without the farm
+  std::optional<ImageCounts> images;             ///< nullopt: no cameras with colours
 };
 
 /// Times [ns] are on the robot's own monotonic clock. The world and the sensor set must outlive it. Not thread-safe.
@@ -73,8 +75,8 @@ class RobotLink {
   /// Processes received packets and releases delayed ones, in both directions.
   void run(std::int64_t now);
 
-  /// The newest reading of each sensor, with its time on the robot's own clock. The caller sets `X_WM` and `X_WS`.
-  /// Valid until the next call or `run`.
+  /// The newest reading of each sensor, of cameras with colours the newest with its image, with its time on the robot's
+  /// own clock. The caller sets `X_WM` and `X_WS`. Valid until the next call or `run`.
   struct Newest {
     base::ReadingBlock block;
     const sensors::SensorSpec* row = nullptr;
@@ -106,10 +108,11 @@ class RobotLink {
   /// The packets of one sensor, as identified in the injected link.
   struct Stream {
     SensorStream source;
-    std::uint32_t sequence = 0;  ///< of the last reading received
-    std::uint64_t piece = 0;     ///< its datagrams received before
-    std::uint64_t whole = 0;     ///< complete readings
-    bool fused = false;          ///< the newest one includes a reading of the robot's own sensor
+    std::uint32_t sequence = 0;                 ///< of the last reading received
+    std::uint64_t piece = 0;                    ///< its datagrams received before
+    std::uint64_t whole = 0;                    ///< complete readings
+    bool fused = false;                         ///< the newest one includes a reading of the robot's own sensor
+    std::optional<ReceivedCamera> camera = {};  ///< of cameras with colours
   };
   static std::vector<Stream> streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& layout,
                                         std::uint32_t mover);

@@ -115,9 +115,18 @@ void warn_of_pose(const world::World& world, const world::Mover& robot, const ba
   if (!where.empty()) print_message("warning: at ({:g}, {:g}) '{}' is {}", X_WM.x, X_WM.y, robot.name, where);
 }
 
-/// @return the exit code
-int write_image(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading,
-                const SenseOptions& options) {
+/// Warns of labels that 16 bits cannot state.
+void warn_of_labels(const base::ReadingBlock& reading) {
+  const auto beyond = std::ranges::count_if(reading.hits, [](std::uint32_t hit) {
+    return hit != base::kNoHit && hit != base::kFloorHit && hit > kLargestLabel - 2;
+  });
+  if (beyond > 0)
+    print_message("warning: {} show models whose number exceeds {}, so their label is {} too; --json names them",
+                  counted(static_cast<std::uint64_t>(beyond), "pixel"), kLargestLabel - 2, kLargestLabel);
+}
+
+void write_image(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading,
+                 const SenseOptions& options) {
   const std::string& name = sensor_set.row(reading).name;
   if (reading.type != sensors::kCamera)
     throw base::InputError(world.file, 0,
@@ -130,7 +139,7 @@ int write_image(const world::World& world, const sensors::SensorSet& sensor_set,
     throw base::InputError(world.file, 0, fmt::format("'{}' has no colours; expected 'rgb 1' in the camera", name));
   viz::write_picture(options.out, camera_png(camera, reading, *options.image));
   print_message("wrote {}", options.out);
-  return 0;
+  if (options.image == ImageKind::labels) warn_of_labels(reading);
 }
 
 /// A fleet reads the settings of its cars.
@@ -198,7 +207,8 @@ int sense(const SenseOptions& options) {
   if (options.no_return_inf) sensors::mark_no_return(reading, sensor_set.row(reading).limit, values);
   if (!options.json && !options.too_near_min) base::mark_too_near(reading.quality, values);
   reading.values = values;
-  if (options.image) return write_image(world, sensor_set, reading, options);
+  if (options.image) write_image(world, sensor_set, reading, options);
+  if (options.image && !options.json) return 0;
   if (!options.json) print_message(place_of(world, sensor_set, reading));
   print(options.json ? with_warnings(reading_json(world, sensor_set, reading), world.warnings)
                      : reading_csv(world, sensor_set, reading));

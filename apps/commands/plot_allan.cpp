@@ -27,6 +27,12 @@ namespace {
 
 constexpr std::size_t kMostPanels = 16;
 
+/// Prints which columns or sensors are neither drawn nor written.
+void note_left_out(const std::string& why, const std::vector<std::string>& names) {
+  if (!names.empty()) print_message("warning: --allan leaves out, {}: {}", why, fmt::join(names, ", "));
+}
+const std::string kNoPanel = fmt::format("beyond {} panels", kMostPanels);
+
 /// One quantity of a sensor.
 struct Measured {
   std::string name;
@@ -128,7 +134,7 @@ std::optional<double> finite_number(std::string_view text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-/// Returns the times first, then the columns whose first field is a number.
+/// Returns the times first, then the columns whose first field is a number. Prints the names of the others.
 std::vector<TableColumn> columns_of(const std::string& file) {
   constexpr std::string_view kTime = "time_s";
   world::TableRecord record(file);
@@ -146,8 +152,13 @@ std::vector<TableColumn> columns_of(const std::string& file) {
       columns.push_back({std::string(kTime), static_cast<std::size_t>(time - headings.begin()), {}});
       continue;
     }
+    std::vector<std::string> texts;
     for (std::size_t i = 0; first && i < headings.size(); ++i)
-      if (i != columns[0].place && finite_number(record.field(i))) columns.push_back({headings[i], i, {}});
+      if (!finite_number(record.field(i)))
+        texts.push_back(headings[i]);
+      else if (i != columns[0].place)
+        columns.push_back({headings[i], i, {}});
+    note_left_out("since they do not begin with a number", texts);
     first = false;
     for (TableColumn& column : columns) {
       const std::optional<double> value = finite_number(record.field(column.place));
@@ -191,7 +202,10 @@ viz::SeriesOptions allan_figure_of_table(const std::string& file) {
   }
   figure.subtitle =
       fmt::format("{}: {}", std::filesystem::path(file).filename().string(), counted(columns[0].samples.size(), "row"));
-  if (columns.size() > kMostPanels + 1) figure.subtitle += fmt::format(", the first {} columns shown", kMostPanels);
+  std::vector<std::string> beyond;
+  for (std::size_t i = kMostPanels + 1; i < columns.size(); ++i) beyond.push_back(columns[i].name);
+  note_left_out(kNoPanel, beyond);
+  if (!beyond.empty()) figure.subtitle += fmt::format(", the first {} columns shown", kMostPanels);
   return figure;
 }
 
@@ -216,6 +230,9 @@ viz::SeriesOptions allan_figure(const record::Recording& recording, const world:
     ++drawn;
   }
   figure.subtitle = fmt::format("{}: {}", recording.info.world, counted(sensors.size(), "sensor"));
+  std::vector<std::string> beyond;
+  for (std::size_t i = drawn; i < sensors.size(); ++i) beyond.push_back(sensors[i].name);
+  note_left_out(kNoPanel, beyond);
   if (drawn < sensors.size()) figure.subtitle += fmt::format(", the first {} shown", drawn);
   return figure;
 }

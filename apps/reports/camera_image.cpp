@@ -11,7 +11,7 @@ namespace {
 
 std::uint16_t label_of(std::uint32_t hit) {
   if (hit == base::kNoHit) return 0;
-  return hit == base::kFloorHit ? std::uint16_t{1} : static_cast<std::uint16_t>(std::min(hit + 2, 65535u));
+  return hit == base::kFloorHit ? std::uint16_t{1} : static_cast<std::uint16_t>(std::min(hit, kLargestLabel - 2) + 2);
 }
 
 std::string normals_png(const base::ReadingBlock& reading, int width, int height) {

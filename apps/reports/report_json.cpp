@@ -540,7 +540,9 @@ std::string robot_client_json(const server::RobotClientStats& f) {
             {"dropped_by_farm", {{"processor", f.dropped.processor}, {"network", f.dropped.network}}},
             {"log_lines_left_out", f.lines_left_out}};
   json.update(link_json(f.link));
+  if (f.link.images) json["images"] = {{"whole", f.link.images->whole}, {"invalid", f.link.images->invalid}};
   if (f.link.direct) json["direct_v2v"] = direct_v2v_json(*f.link.direct);
+  if (!f.stop_reason.empty()) json["stop_reason"] = f.stop_reason;
   if (f.own) json["positions"] = own_state_json(*f.own);
   if (f.map)
     json["own_map"] = {{"scans", f.map->scans},

@@ -45,6 +45,7 @@ std::string link_text(const server::LinkCounts& link) {
                 link.sent.dropped);
   text += row("readings", types_text(link));
   text += row("sensor packets", netio::packet_counts_text(in.packets));
+  if (link.images) text += row("images", "{} whole, {} invalid", link.images->whole, link.images->invalid);
   if (link.stale > 0) text += row("", counted(link.stale, "reading") + " of a stale state");
   text += row("", "{} late, {}, {} lost", in.late, counted(in.duplicates, "duplicate"), in.lost);
   if (in.jumps > 0) text += row("", counted(in.jumps, "packet") + " implausibly far ahead");
@@ -127,6 +128,7 @@ std::string robot_client_text(const server::RobotClientStats& f) {
     text += row("  silent", counted(f.lights.silences, "time") + " that a received light fell silent");
   text += row("driven", "{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
               f.pose.yaw * 180.0 / M_PI);
+  if (!f.stop_reason.empty()) text += row("stands still", f.stop_reason);
   if (f.own) text += own_state_text(*f.own);
   if (f.drives + f.drives_ignored > 0)
     text += row("remote commands", "{} followed, {} ignored", f.drives, f.drives_ignored);

@@ -37,26 +37,46 @@ def _valid(self, type, without_noise=False):
     return measured & (self.flags(type) == 0) & stated[:, None]
 
 
-def _images(self, kind="depth", type="camera"):
+def _camera(self, type, robot, sensor):
+    """Returns the row of a robot's camera in the tables of its type."""
+    rows = _numpy.flatnonzero(self.rows(type) == robot)
+    if not 0 <= sensor < len(rows):
+        raise Error(f"robot {robot} has {len(rows)} sensors '{type}'; expected one of them, numbered from 0, and not {sensor}")
+    return rows[sensor]
+
+
+def _images(self, kind="depth", type="camera", robot=None, sensor=0):
     """Returns the newest images of all cameras: of "depth" (cameras, height, width) [m], of "labels" (cameras, height,
     width), the hits, and of "normals" (cameras, height, width, 3) views without a copy; of "colour" a new array of bytes
-    (cameras, height, width, 3)."""
+    (cameras, height, width, 3). With `robot`, a row of `poses`, that of its camera number `sensor` alone, without the
+    first axis."""
     kinds = "depth", "labels", "colour", "normals"
     if kind not in kinds:
         raise Error(f"there are no images of '{kind}'; expected one of {', '.join(kinds)}")
-    width, values = self._image_width(type), self.readings(type)
-    if width == 0:
-        raise Error(f"images of '{type}' have no common size; expected cameras with one resolution")
-    columns = 1 if values.ndim == 2 else values.shape[2]
-    images = values.reshape(values.shape[0], -1, width, columns)
-    if kind == "depth":
-        return images[..., 0]
+    sizes, values = self._image_sizes(type).reshape(-1, 2), self.readings(type)
+    if len(sizes) == 0:
+        raise Error(f"'{type}' has no images; expected the type of a camera")
+    if robot is None and (sizes != sizes[0]).any():
+        raise Error(f"images of '{type}' have no common size; expected images(kind, robot=ROW, sensor=NUMBER) for one of them")
+    row = 0 if robot is None else _camera(self, type, robot, sensor)
+    part = slice(None) if robot is None else slice(row, row + 1)
+    columns = self._widths(type)[part].max()
+    pixels = int(sizes[row].prod())
+    shape = -1, sizes[row][1], sizes[row][0]
+
+    def of(images):
+        return images if robot is None else images[0]
+
     if kind == "labels":
-        return self.hits(type).reshape(images.shape[:3])
+        return of(self.hits(type)[part, :pixels].reshape(shape))
+    images = values[part, :pixels].reshape(*shape, -1)
+    if kind == "depth":
+        return of(images[..., 0])
     if kind == "colour" and columns > 1:
-        return _numpy.nan_to_num(images[..., 1]).astype("<u4", order="C").view(_numpy.uint8).reshape(*images.shape[:3], 4)[..., 2::-1]
+        numbers = _numpy.nan_to_num(images[..., 1]).astype("<u4", order="C")
+        return of(numbers.view(_numpy.uint8).reshape(*numbers.shape, 4)[..., 2::-1])
     if kind == "normals" and columns > 2:
-        return images[..., 2:5]
+        return of(images[..., 2:5])
     raise Error(f"'{type}' has no images of '{kind}'; expected 'rgb 1' for colour, or 'normals 1' for normals")
 
 

@@ -187,6 +187,23 @@ TEST(AllanDeviation, IsDrawnOfTables) {
   EXPECT_TRUE(contains(refused("time_s,x\n0,1\n1,1\n2,1\n9,1\n"), "without gaps"));
 }
 
+TEST(AllanDeviation, StatesWhichColumnsItLeavesOut) {
+  const Folder folder;
+  std::string rows = "time_s";
+  for (int i = 0; i < 17; ++i) rows += ",c" + std::to_string(i);
+  rows += ",name\n";
+  for (int k = 0; k < 4; ++k) {
+    rows += std::to_string(k);
+    for (int i = 0; i < 17; ++i) rows += "," + std::to_string(k % 2);
+    rows += ",a\n";
+  }
+  const std::string said =
+      run_successfully({"plot", folder.write("log.csv", rows), "--allan", "-o", folder.path("o"), "--format", "svg"})
+          .err;
+  EXPECT_TRUE(contains(said, "--allan leaves out, beyond 16 panels: c16\n")) << said;
+  EXPECT_TRUE(contains(said, "since they do not begin with a number: name\n")) << said;
+}
+
 TEST_F(PaperFigures, AllanDeviationsNeedImusOrGyros) {
   EXPECT_TRUE(contains(refusal({"--allan"}), "there are no readings of an imu or a gyro"));
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <regex>
 
@@ -146,6 +147,28 @@ TEST(Sense, RobotsAndNestedModelsAreNamedAndTheOwnBodyIsNotSeen) {
   const Json other = sense({world, "--robot", "bert", "--pose", "0,1,0"});
   EXPECT_EQ(other.text("/robot"), "bert");
   EXPECT_TRUE(other.is_null(beam(0, "hit")));
+}
+
+TEST(Sense, ImagesAndJsonAreBothWritten) {
+  const Folder folder;
+  const std::string world = folder.write("c.world", "position( camera( resolution [4 2] range [0 9] ) )");
+  const Json json = sense({world, "--image", "depth", "-o", folder.path("d.png")});
+  EXPECT_EQ(json.number("/depth_m/0"), 9.0);
+  EXPECT_TRUE(read_file(folder.path("d.png")).starts_with("\x89PNG"));
+}
+
+// Labels are numbers of models plus 2, in 16 bits.
+TEST(Sense, LabelsBeyondSixteenBitsAreAWarning) {
+  const Folder folder;
+  std::string text = "position( camera( resolution [4 2] range [0 9] ) )\n";
+  const auto said = [&](std::string_view name) {
+    const std::string world = folder.write(std::string(name), text + "model( pose [3 0 0 0] size [.1 10 5] )\n");
+    return run_successfully({"sense", world, "--image", "labels", "-o", folder.path("l.png")}).err;
+  };
+  while (std::ranges::count(text, '\n') < 65'533) text += "model( pose [99 0 0 0] size [1 1 1] )\n";
+  EXPECT_FALSE(contains(said("most.world"), "warning")) << "number 65533 has label 65535";
+  text += "model( pose [99 0 0 0] size [1 1 1] )\n";
+  EXPECT_TRUE(contains(said("beyond.world"), "warning: 8 pixels show models whose number exceeds 65533")) << "65534";
 }
 
 TEST(Sense, NoiseIsDisabled) {

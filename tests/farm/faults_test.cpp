@@ -9,14 +9,18 @@
 #include <map>
 
 #include "base/time.h"
+#include "farm/own_noise.h"
 #include "robots/fleet.h"
 #include "sensors/camera.h"
+#include "sensors/compass.h"
 #include "sensors/encoder.h"
 #include "sensors/gyro.h"
+#include "sensors/imu.h"
 #include "sensors/laser.h"
 #include "sensors/lidar.h"
 #include "tests/farm/small_farm.h"
 #include "tests/refusal.h"
+#include "tests/units.h"
 #include "world/append_robot.h"
 #include "world/stage/build_world.h"
 
@@ -246,7 +250,18 @@ TEST(Faults, PixelsAndEchoesKeepTheLimitsOfRanges) {
   EXPECT_EQ(normals[2], clean[2]) << "no surface, no normal";
   EXPECT_EQ(normals[2 * 5 + 2], clean[2 * 5 + 2] + 0.25);
   EXPECT_EQ(normals[2 * 5 + 3], clean[2 * 5 + 3]) << "normal_y";
-  EXPECT_EQ(values({fault("camera", 1.0, "rgb")}, seen)[1], clean[1] + 1.0) << "the sky has a colour";
+  EXPECT_EQ(values({fault("camera", 1.0, "rgb")}, seen)[1], clean[1] + 0x010101) << "the sky has a colour";
+  EXPECT_EQ(values({fault("camera", 300.0, "rgb")}, seen)[1], 0xFFFFFF) << "no channel carries into another";
+  EXPECT_EQ(values({fault("camera", -300.0, "rgb")}, seen)[1], 0.0);
+  Fault noise = fault("camera", 40.0, "rgb");
+  noise.kind = FaultKind::noise;
+  const Values noisy = values({noise}, seen);
+  for (const std::uint32_t channel : {0xFF0000u, 0xFF00u, 0xFFu}) {
+    int changed = 0;
+    for (std::size_t i = 1; i < clean.size(); i += 5)
+      changed += (static_cast<std::uint32_t>(noisy[i]) & channel) != (static_cast<std::uint32_t>(clean[i]) & channel);
+    EXPECT_GE(changed, 2) << "each channel has its own noise";
+  }
   EXPECT_EQ(values({fault("camera", 1.0, "", 1)}, near), (Values{4.0, 4.0, 4.0})) << "too near";
   const Values echoes = values({fault("lidar", 0.5, "intensity")}, lidar), before = values({}, lidar);
   for (std::size_t i = 0; i < 4; ++i)
@@ -324,6 +339,42 @@ TEST(Faults, NoiseIsNormal) {
   EXPECT_EQ(run_with(two_robots("noise 1"), {multiple}, 3, {.noise = false}).find(sensors::kGyro, 0, 1)->reading.values,
             run_with(two_robots("noise 1"), {}, 3, {.noise = false}).find(sensors::kGyro, 0, 1)->reading.values)
       << "a run without noise has none to multiply";
+}
+
+/// The deviation of a reading's noise is known beside errors that last, and for each axis.
+TEST(Faults, NoiseIsKnownBesideBiases) {
+  const world::World world = world::build_world(
+      "noise.world",
+      "position( imu( rate 100 gyro_noise 0.1 gyro_bias 1 accel_noise 0.01 accel_bias 1 )\n"
+      "compass( noise 3e-7 bias 1e-6 ) altimeter( noise 0.1 bias 2 ) inclinometer( noise 0.05 bias 1 )\n"
+      "gyro( noise 1 bias 1 ) gps( noise 0.5 ) )",
+      {.sensors = sensors::world_file_words()});
+  const sensors::SensorSet sensor_set(world);
+  struct Case {
+    const char *type, *column;
+    double noise;  ///< [unit of the column]; 0: not stated
+  };
+  for (const Case& c : {Case{"imu", "", kDegree},  // 0.1 deg/s sqrt(s), over a hundredth of a second
+                        {"imu", "rate_z_rad_s", kDegree},
+                        {"imu", "force_y_m_s2", 0.1},
+                        {"imu", "saturated", 0.0},
+                        {"compass", "field_T", 0.0},
+                        {"compass", "field_z_T", 3e-7},
+                        {"compass", "heading_rad", 0.0},
+                        {"altimeter", "", 0.1},
+                        {"inclinometer", "pitch_rad", 0.05 * kDegree},
+                        {"gyro", "", kDegree},
+                        {"gps", "y_m", 0.0}}) {
+    const Fault fault{
+        .kind = FaultKind::noise, .robot = "*", .type = c.type, .column = c.column, .amount = 2.0, .multiplies = true};
+    const std::string refused = refusal_of([&] { check_faults(std::span(&fault, 1), world, sensor_set); });
+    EXPECT_EQ(refused.empty(), c.noise > 0.0) << c.type << " " << c.column << ": " << refused;
+  }
+  for (const auto& [type, offset, noise] :
+       {std::tuple{sensors::kImu, 0u, kDegree}, {sensors::kImu, 5u, 0.1}, {sensors::kCompass, 3u, 3e-7}}) {
+    const sensors::SensorSet::Group& group = *sensor_set.group(type);
+    EXPECT_NEAR(own_noise(group, group.rows[0], offset), noise, 1e-12) << static_cast<int>(type) << " " << offset;
+  }
 }
 
 TEST(Faults, DrawsDifferByRobotAndFault) {

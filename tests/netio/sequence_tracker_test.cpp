@@ -22,7 +22,12 @@ TEST(SequenceTracker, InOrder) {
   EXPECT_EQ(tracker.duplicates + tracker.reordered, 0u);
 }
 
-TEST(SequenceTracker, LossBeforeTheFirstArrivalCounts) { EXPECT_EQ(lost(after({3, 4})), 3u); }
+TEST(SequenceTracker, NothingBeforeTheFirstArrivalIsLost) {
+  EXPECT_EQ(lost(after({3, 4})), 0u) << "the receiver started later";
+  EXPECT_EQ(lost(after({3, 6})), 2u);
+  EXPECT_EQ(lost(after({3, 2})), 0u) << "reordered";
+  EXPECT_EQ(lost(after({3, 1})), 1u) << "2, between them";
+}
 
 TEST(SequenceTracker, GapCountsAsLoss) { EXPECT_EQ(lost(after({0, 1, 5})), 3u); }
 

@@ -403,6 +403,31 @@ class Cameras(unittest.TestCase):
         with self.assertRaisesRegex(sensorfarm.Error, "expected one of depth, labels, colour, normals"):
             sim.images("heat")
 
+    def test_images_of_different_sizes(self):
+        sim = sensorfarm.Simulation.from_text(
+            "floor_color \"red\" position( name \"a\" camera( resolution [4 2] range [0 9] ) ) position( name \"b\" "
+            "camera( resolution [3 5] range [0 7] rgb 1 normals 1 ) camera( resolution [3 5] range [0 8] ) )")
+        sim.step()
+        with self.assertRaisesRegex(sensorfarm.Error, r"expected images\(kind, robot=ROW, sensor=NUMBER\)"):
+            sim.images()
+        one, two = sim.images(robot=0), sim.images(robot=1, sensor=1)
+        self.assertEqual((one.shape, two.shape), ((2, 4), (5, 3)))
+        self.assertEqual((one[0, 0], sim.images(robot=1)[0, 0], two[0, 0]), (9.0, 7.0, 8.0), "the sky")
+        self.assertTrue(numpy.shares_memory(two, sim.readings("camera")), "a view")
+        labels, normals = sim.images("labels", robot=1), sim.images("normals", robot=1)
+        self.assertEqual((labels.shape, normals.shape), ((5, 3), (5, 3, 3)))
+        self.assertEqual((labels[0, 0], labels[4, 1]), (sensorfarm.NONE, sensorfarm.FLOOR))
+        self.assertTrue(numpy.shares_memory(labels, sim.hits("camera")), "a view")
+        self.assertTrue(numpy.shares_memory(normals, sim.readings("camera")), "a view")
+        colour = sim.images("colour", robot=1)
+        self.assertEqual(colour.shape, (5, 3, 3))
+        self.assertTrue(colour[4, 1, 0] > 0 and colour[4, 1, 1] == 0, "the floor is red")
+        for robot, sensor in ((0, 1), (1, 2), (1, -1), (2, 0)):
+            with self.assertRaisesRegex(sensorfarm.Error, f"robot {robot} has . sensors 'camera'"):
+                sim.images(robot=robot, sensor=sensor)
+        with self.assertRaisesRegex(sensorfarm.Error, "expected 'rgb 1' for colour"):
+            sim.images("colour", robot=0)
+
     def test_sensors_with_fewer_columns_are_valid_and_have_hits(self):
         sim = sensorfarm.Simulation.from_text(
             "model( name \"wall\" size [1 9 4] pose [3 0 0 0] ) position( camera( resolution [4 2] rgb 1 normals 1 ) "

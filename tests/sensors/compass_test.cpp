@@ -13,8 +13,9 @@ namespace sf::trial {
 namespace {
 
 /// Returns the field [µT] and the heading [degrees] of a robot with a heading [degrees] and a tilt.
-std::vector<double> sensed(const std::string& settings, double yaw, const base::Tilt& tilt = {}) {
-  const world::World world = world_of("position( compass( " + settings + " ) )");
+std::vector<double> sensed(const std::string& settings, double yaw, const base::Tilt& tilt = {},
+                           const std::string& earth = "") {
+  const world::World world = world_of(earth + " position( compass( " + settings + " ) )");
   farm::Farm farm(world, host_device(), {});
   const auto values = farm.sense(0, sensors::kCompass, 0, {5, 6, 0, yaw * M_PI / 180.0}, tilt).values;
   std::vector<double> scaled;
@@ -42,6 +43,16 @@ TEST(Compass, ReadsTheFieldOfTheEarth) {
   expect_near(sensed("pose6 [0 0 0 0 0 90]", 0.0), {50.0, level, 0.0, down, 0.0});
 }
 
+TEST(Compass, ReadsTheFieldOfTheWorld) {
+  const std::string earth = "earth_field [0.03 0.04 -0.12]";  // [G]: 5 µT level, 12 downwards
+  const double north_to_east = std::atan2(3.0, 4.0) * 180.0 / M_PI;
+  expect_near(sensed("", 0.0, {}, earth), {13.0, 3.0, 4.0, -12.0, 90.0 - north_to_east});
+  // Each key of its own replaces that part alone.
+  expect_near(sensed("strength 26e-6", 0.0, {}, earth), {26.0, 6.0, 8.0, -24.0, 90.0 - north_to_east});
+  expect_near(sensed("declination 0", 0.0, {}, earth), {13.0, 0.0, 5.0, -12.0, 90.0});
+  expect_near(sensed("inclination 0", 0.0, {}, earth), {13.0, 7.8, 10.4, 0.0, 90.0 - north_to_east});
+}
+
 TEST(Compass, TiltsWithTheRobot) {
   const auto reading = sensed("", 90.0, {0.0, 0.5});
   const double c = std::cos(0.5), s = std::sin(0.5), down = -25.0 * std::sqrt(3.0);
@@ -63,6 +74,7 @@ TEST(Compass, ImpossibleSettingsAreRefused) {
   expect_in("trial.world:2: 'inclination'", refused("inclination 91"));
   expect_in("'hard_iron' has 2; expected [x y z] in tesla, from -1 to 1", refused("hard_iron [0 2 0]"));
   expect_in("'soft_iron'", refused("soft_iron [1 2]"));
+  expect_in("'strength' has 3 numbers; expected one", refused("strength [1e-5 2e-5 3e-5]"));
   expect_in("'strength'", refused("strength -1"));
 }
 

@@ -115,7 +115,7 @@ TEST(Limits, ShortRangesFarAway) {
   }
 }
 
-/// Settings of world files at their limits, in metres and degrees, and the next values beyond.
+/// Settings of world files at their limits, in metres and degrees, the next values beyond, and two numbers for one.
 TEST(Limits, SettingsAreLimited) {
   const auto refused = [](const std::string& type, const std::string& key, std::vector<double> values) {
     const std::string error = refusal_of(
@@ -162,6 +162,7 @@ TEST(Limits, SettingsAreLimited) {
     EXPECT_FALSE(refused(r.type, r.key, {r.last})) << r.type << " " << r.key;
     EXPECT_TRUE(refused(r.type, r.key, {r.below})) << r.type << " " << r.key;
     EXPECT_TRUE(refused(r.type, r.key, {r.above})) << r.type << " " << r.key;
+    EXPECT_TRUE(refused(r.type, r.key, {r.first, r.first})) << r.type << " " << r.key;
   }
   for (const auto& [left, right, out] : {std::tuple{0.1, 10.0, false},
                                          {10.0, 0.1, false},

@@ -12,6 +12,7 @@
 #include "sensors/accuracy.h"
 #include "sensors/aggregate.h"
 #include "sensors/bumper.h"
+#include "sensors/camera.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
 #include "server/robot_client.h"
@@ -69,6 +70,7 @@ struct Fixture {
       layout.bases[sensors::kLaser] = 11'000 + (static_cast<unsigned>(getpid()) + 17 * attempt) * 32 % 20'000;
       layout.bases[sensors::kBumper] = layout.bases.at(sensors::kLaser) + 4;  // between those of lasers
       layout.bases[sensors::kAggregate] = layout.bases.at(sensors::kLaser) + 5;
+      layout.bases[sensors::kCamera] = layout.bases.at(sensors::kLaser) + 6;
       try {
         const netio::Socket free = netio::open_udp({netio::kLoopback, reading_port(1)}),
                             other = netio::open_udp({netio::kLoopback, reading_port(2)});
