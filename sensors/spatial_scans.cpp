@@ -47,15 +47,16 @@ SpatialScans::SpatialScans(const SensorContext& context, const SensorType& type,
       rasterizers_(context.thread_pool.threads()),
       trails_(context.world, context.states, longest_scan(scanners_)),
       moved_(rasterizers_.size()) {
-  bool normals = false;
+  bool cosines = false, normals = false;
   for (const SpatialScanner& s : scanners_) {
     first_beam_.push_back(first_beam_.back() + s.beams->directions.size());
     first_part_.push_back(first_part_.back() + (s.plain ? 0 : s.beams->placed_directions().size()));
-    normals = normals || s.normals;
+    cosines = cosines || s.cosines, normals = normals || s.normals;
   }
   hits_.resize(first_beam_.back()), quality_.resize(first_beam_.back());
   const std::size_t parts = first_part_.back();
-  part_ranges_.resize(parts), part_cosines_.resize(parts), part_hits_.resize(parts), part_quality_.resize(parts);
+  part_ranges_.resize(parts), part_hits_.resize(parts), part_quality_.resize(parts);
+  if (cosines) part_cosines_.resize(parts);
   if (normals) part_normals_.resize(parts);
   if (!materials().empty()) part_materials_.resize(parts);
   if (raycast::choose_caster(context.device.info().software, context.scene.caster).on_device)
@@ -172,9 +173,9 @@ scene::ScanOutput SpatialScans::output_of(std::size_t i) {
   const SpatialScanner& s = scanners_[sample.row];
   if (s.plain)
     return {.ranges = sample.values, .hits = beams_of(hits_, i), .quality = beams_of(quality_, i), .single = s.single};
-  scene::ScanOutput out{parts_of(part_ranges_, i), parts_of(part_hits_, i), parts_of(part_quality_, i),
-                        parts_of(part_cosines_, i)};
+  scene::ScanOutput out{parts_of(part_ranges_, i), parts_of(part_hits_, i), parts_of(part_quality_, i)};
   out.single = s.single;
+  if (s.cosines) out.cosines = parts_of(part_cosines_, i);
   if (s.normals) out.normals = parts_of(part_normals_, i);
   if (s.materials && !s.follows && !part_materials_.empty()) out.materials = parts_of(part_materials_, i);
   return out;
@@ -231,9 +232,14 @@ void SpatialScans::cast_tiles(const base::RigidTransform& X_WS, std::span<const 
 }
 
 void SpatialScans::measure_all() {
-  for (std::size_t i = 0; i < samples().size(); ++i) std::ranges::fill(output_of(i).quality, base::QualityFlag::none);
+  const auto clear = [this](std::size_t i) { std::ranges::fill(output_of(i).quality, base::QualityFlag::none); };
+  const std::size_t count = samples().size();
+  if (jobs_.size() == count)  // one per sample, finished while its hits are in the cache
+    return thread_pool().parallel_for_each(
+        count, 1, [&](std::size_t i, unsigned thread) { clear(i), cast(jobs_[i], thread), finish(i, thread); });
+  for (std::size_t i = 0; i < count; ++i) clear(i);
   thread_pool().parallel_for_each(jobs_.size(), 1, [&](std::size_t i, unsigned thread) { cast(jobs_[i], thread); });
-  thread_pool().parallel_for_each(samples().size(), 1, [&](std::size_t i, unsigned thread) { finish(i, thread); });
+  thread_pool().parallel_for_each(count, 1, [&](std::size_t i, unsigned thread) { finish(i, thread); });
 }
 
 void SpatialScans::collect(std::span<base::ReadingBlock> out) {
