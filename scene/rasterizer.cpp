@@ -5,6 +5,7 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <optional>
+#include <type_traits>
 
 #include "scene/rasterizer/scratch.h"
 #include "scene/texture_map.h"
@@ -254,12 +255,18 @@ void Scan::measure(const BeamTile& tile, std::uint32_t vector) {
 void Scan::write(const BeamTile& tile, std::uint32_t vector) {
   const std::uint32_t first = kWidth * vector;
   const std::uint32_t* const place = tile.place + first;
-  if (tile.consecutive) {
-    std::memcpy(&out_.ranges[place[0]], ranges_, sizeof ranges_);
-    std::memcpy(&out_.hits[place[0]], hits_, sizeof hits_);
-  } else {
-    for (std::uint32_t i = 0; i < kWidth; ++i) out_.ranges[place[i]] = ranges_[i], out_.hits[place[i]] = hits_[i];
-  }
+  const auto write_runs = [&](auto run) {
+    for (std::uint32_t i = 0; i < kWidth; i += run) {
+      std::memcpy(&out_.ranges[place[i]], ranges_ + i, run * sizeof *ranges_);
+      std::memcpy(&out_.hits[place[i]], hits_ + i, run * sizeof *hits_);
+    }
+  };
+  if (tile.run == kWidth)
+    write_runs(std::integral_constant<std::uint32_t, kWidth>());
+  else if (tile.run == 4)
+    write_runs(std::integral_constant<std::uint32_t, 4>());
+  else
+    write_runs(std::integral_constant<std::uint32_t, 1>());
   if (!out_.cosines.empty())
     for (std::uint32_t i = 0; i < kWidth; ++i)
       out_.cosines[place[i]] = hits_[i] == base::kNoHit ? 0.0f : static_cast<float>(std::min(1.0, std::abs(sines_[i])));
