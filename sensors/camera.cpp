@@ -41,7 +41,8 @@ std::vector<SpatialScanner> scanners_of(const std::vector<CameraSettings>& camer
                         .normals = s.normals,
                         .materials = s.rgb,
                         .follows = s.rgb,
-                        .single = s.mode != 0});
+                        .single = s.mode != 0,
+                        .depth_max = s.range_max});
   return scanners;
 }
 
@@ -66,7 +67,7 @@ class Cameras : public SpatialScans {
   void follow(std::size_t sample, const base::RigidTransform& X_WS, const scene::BeamTile& tile,
               const scene::TileSurfaces& surfaces, unsigned thread) override;
   void finish(std::size_t sample, unsigned thread) override;
-  void measure_depths(std::size_t sample);
+  void write_pixels(std::size_t sample);
   std::uint32_t color_of(std::size_t sample, std::size_t pixel, std::span<const glm::vec3> light) const;
 
   const std::vector<CameraSettings>& settings_;
@@ -168,16 +169,6 @@ std::uint32_t Cameras::color_of(std::size_t i, std::size_t pixel, std::span<cons
   return base::srgb_color(glm::vec3(mean));
 }
 
-/// Returns the depth of a pixel that was cast.
-/// @param axial of its beam, along the axis  @param hit, flag of the beam, then of the pixel
-double depth_of(const CameraSettings& s, double range, double axial, std::uint32_t& hit, base::QualityFlag& flag) {
-  const double depth = range * axial;
-  const bool seen = hit != base::kNoHit && depth < s.range_max;
-  flag = seen && depth < s.range_min ? base::QualityFlag::too_near : flag;
-  hit = seen ? hit : base::kNoHit;
-  return seen ? std::max(depth, s.range_min) : s.range_max;
-}
-
 /// Pixels of a whole image without a surface.
 void see_nothing(const CameraSettings& s, std::span<double> values, std::span<std::uint32_t> hits) {
   std::ranges::fill(hits, base::kNoHit);
@@ -185,18 +176,20 @@ void see_nothing(const CameraSettings& s, std::span<double> values, std::span<st
   for (std::size_t i = 0; i < values.size(); i += s.columns()) values[i] = s.range_max;
 }
 
-/// Turns ranges into depths, in the reading of a plain camera.
-void Cameras::measure_depths(std::size_t i) {
-  const HostSample& sample = samples()[i];
-  const CameraSettings& s = settings_[sample.row];
-  const auto hits = hits_of(i);
-  const auto quality = quality_of(i);
-  for (std::size_t k = 0; k < sample.values.size(); ++k)
-    sample.values[k] = depth_of(s, sample.values[k], s.beams->directions[k].x, hits[k], quality[k]);
+/// Flags surfaces nearer than the smallest depth. @param step numbers per pixel
+void flag_near(double least, std::span<double> values, std::size_t step, std::span<base::QualityFlag> quality) {
+  for (std::size_t k = 0; k < quality.size(); ++k)
+    if (double& depth = values[k * step]; depth < least) depth = least, quality[k] = base::QualityFlag::too_near;
 }
 
 void Cameras::finish(std::size_t i, unsigned) {
-  if (scanner_of(i).plain) return measure_depths(i);
+  if (!scanner_of(i).plain) write_pixels(i);
+  if (const double least = settings_[samples()[i].row].range_min; least > 0.0)
+    flag_near(least, samples()[i].values, settings_[samples()[i].row].columns(), quality_of(i));
+}
+
+/// Writes the pixels of a camera that is not plain.
+void Cameras::write_pixels(std::size_t i) {
   const HostSample& sample = samples()[i];
   const CameraSettings& s = settings_[sample.row];
   const scene::ScanOutput from = output_of(i);
@@ -212,9 +205,9 @@ void Cameras::finish(std::size_t i, unsigned) {
     const std::size_t k = cast.empty() ? c : cast[c], first = c * parts;
     const std::span<double> pixel = sample.values.subspan(k * width, width);
     hits[k] = from.hits[first], quality[k] = from.quality[first];
-    pixel[0] = depth_of(s, from.ranges[first], s.beams->directions[k].x, hits[k], quality[k]);
+    pixel[0] = from.ranges[first];
     if (width > 1) pixel[1] = !s.rgb ? 0.0 : plain ? colors[c] : color_of(i, k, light.subspan(first, parts));
-    const glm::vec3 normal = hits[k] != base::kNoHit && s.normals ? from.normals[first] : glm::vec3{};
+    const glm::vec3 normal = s.normals ? from.normals[first] : glm::vec3{};
     for (std::size_t axis = 0; axis + 2 < width; ++axis) pixel[2 + axis] = normal[static_cast<int>(axis)];
   }
 }

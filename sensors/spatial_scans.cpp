@@ -171,10 +171,9 @@ void SpatialScans::cast_rolling(const Job& job, std::span<const scene::BeamTile>
 scene::ScanOutput SpatialScans::output_of(std::size_t i) {
   const HostSample& sample = samples()[i];
   const SpatialScanner& s = scanners_[sample.row];
-  if (s.plain)
-    return {.ranges = sample.values, .hits = beams_of(hits_, i), .quality = beams_of(quality_, i), .single = s.single};
-  scene::ScanOutput out{parts_of(part_ranges_, i), parts_of(part_hits_, i), parts_of(part_quality_, i)};
-  out.single = s.single;
+  scene::ScanOutput out{sample.values, beams_of(hits_, i), beams_of(quality_, i)};
+  if (!s.plain) out = {parts_of(part_ranges_, i), parts_of(part_hits_, i), parts_of(part_quality_, i)};
+  out.single = s.single, out.depth_max = s.depth_max;
   if (s.cosines) out.cosines = parts_of(part_cosines_, i);
   if (s.normals) out.normals = parts_of(part_normals_, i);
   if (s.materials && !s.follows && !part_materials_.empty()) out.materials = parts_of(part_materials_, i);
@@ -204,11 +203,15 @@ void SpatialScans::cast_reference(const base::RigidTransform& X_WS, const scene:
     const auto hit = scene::reference_scan(X_WS, s.beams->placed_directions()[i], s.range_max, view);
     out.ranges[i] = surfaces.ranges[k] = static_cast<double>(hit.range);
     out.hits[i] = surfaces.hits[k] = hit.owner;
+    if (out.depth_max > 0.0) {
+      out.ranges[i] = std::min(surfaces.ranges[k] * tile.dx[k], out.depth_max);
+      if (out.ranges[i] == out.depth_max) out.hits[i] = base::kNoHit;
+    }
     surfaces.x[k] = hit.normal.x, surfaces.y[k] = hit.normal.y, surfaces.z[k] = hit.normal.z;
     surfaces.materials[k] = hit.material;
     surfaces.u[k] = hit.coordinates.x, surfaces.v[k] = hit.coordinates.y, surfaces.spread[k] = hit.spread;
     if (!out.cosines.empty()) out.cosines[i] = static_cast<float>(hit.cosine);
-    if (!out.normals.empty()) out.normals[i] = hit.normal;
+    if (!out.normals.empty()) out.normals[i] = out.hits[i] == base::kNoHit ? glm::vec3{} : hit.normal;
     if (!out.materials.empty()) out.materials[i] = hit.material;
   }
   if (out.sink != nullptr) out.sink->take(tile, surfaces);

@@ -29,6 +29,7 @@ struct SpatialScanner {
   bool materials = false;  ///< surfaces have their materials, which are also cast,
   bool follows = false;    ///< or passed to `follow` with texture coordinates
   bool single = false;     ///< as scene::ScanOutput::single
+  double depth_max = 0.0;  ///< as scene::ScanOutput::depth_max
 };
 
 /// Not thread-safe.
