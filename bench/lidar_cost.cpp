@@ -1,10 +1,12 @@
 // Spatial scans against Embree's packets: processor time per beam on one thread, with poses and a hash of the ranges,
 // and the error of each method against every face in `long double`.
 //
-//   build/release/lidar_cost [SCENE [SENSOR [POSES [TURNS [METHODS]]]]]; default: city100 lidar64x1024 20 7
+//   build/release/lidar_cost [SCENE [SENSOR [POSES [TURNS [METHODS [CHECKED]]]]]]; default: city100 lidar64x1024 20 7
+//   "" 2000
 //
 // Prints medians over turns, and sums of each pose's least time, which other load on the machine disturbs less.
-// METHODS: a regular expression for names of methods; the farm's is always measured.
+// METHODS: a regular expression for names of methods; the farm's is always measured. CHECKED: beams that are checked
+// against the reference.
 // LIDAR_ISA=avx2 limits both sides to AVX2.
 
 #include <fmt/format.h>
@@ -41,7 +43,6 @@ namespace sf::bench {
 namespace {
 
 constexpr double kRange = 100.0;
-constexpr std::size_t kChecked = 2'000;  ///< beams checked against the reference
 
 class FarmCaster : public SpatialCaster {
  public:
@@ -50,7 +51,7 @@ class FarmCaster : public SpatialCaster {
              std::uint32_t row)
       : instance_{&tree, {}, true},
         field_(field),
-        pattern_(scene::make_pattern(beams, row)),
+        pattern_(lidar_pattern(beams, row)),
         hits_(beams.size()),
         quality_(beams.size()) {}
   std::string name() const override { return field_ == nullptr ? "farm" : "farm, terrain"; }
@@ -128,7 +129,7 @@ class ForestCaster : public SpatialCaster {
       : name_(std::move(name)),
         scene_(scene),
         angle_(angle),
-        pattern_(scene::make_pattern(beams, row)),
+        pattern_(lidar_pattern(beams, row)),
         hits_(beams.size()),
         quality_(beams.size()) {}
   std::string name() const override { return name_; }
@@ -278,10 +279,11 @@ struct Sample {
   long double range = 0.0L;  ///< [m]
 };
 
-/// @param range_of (pose, beam) -> true range
+/// @param checked number of samples, about  @param range_of (pose, beam) -> true range
 template <class RangeOf>
-std::vector<Sample> samples_of(const LidarScene& scene, std::size_t beams, const RangeOf& range_of) {
-  const std::size_t all = beams * scene.poses.size(), step = all / kChecked | 1;
+std::vector<Sample> samples_of(const LidarScene& scene, std::size_t beams, std::size_t checked,
+                               const RangeOf& range_of) {
+  const std::size_t all = beams * scene.poses.size(), step = all / checked | 1;
   std::vector<Sample> samples;
   for (std::size_t i = 0; i < all; i += step) samples.push_back({i / beams, i % beams, range_of(i / beams, i % beams)});
   return samples;
@@ -299,7 +301,7 @@ void check(Method& method, const LidarScene& scene, const std::vector<Sample>& s
 }
 
 int run(const std::string& scene_name, const std::string& sensor, int poses, std::size_t turns,
-        const std::string& wanted) {
+        const std::string& wanted, std::size_t checked) {
   LidarScene scene = lidar_scene(scene_name, poses);
   std::uint32_t row = 0;
   const std::vector<glm::dvec3> beams = lidar_beams(sensor, row);
@@ -367,7 +369,7 @@ int run(const std::string& scene_name, const std::string& sensor, int poses, std
   const scene::Instance instance{&tree, {}, true};
   std::size_t cast_pose = scene.poses.size();
   const std::vector<Sample> samples =
-      samples_of(scene, beams.size(), [&](std::size_t pose, std::size_t beam) -> long double {
+      samples_of(scene, beams.size(), checked, [&](std::size_t pose, std::size_t beam) -> long double {
         if (!is_forest)
           return scene::reference_scan(scene.poses[pose], beams[beam], kRange, {{&instance, 1}, false}).range;
         if (pose != cast_pose) methods[0].caster->cast(scene.poses[cast_pose = pose], ranges);
@@ -397,12 +399,13 @@ int run(const std::string& scene_name, const std::string& sensor, int poses, std
 
 int main(int count, char** arguments) {
   return sf::bench::run_main(
-      count, arguments, "lidar_cost [SCENE [SENSOR [POSES [TURNS [METHODS]]]]]; default: city100 lidar64x1024 20 7",
-      [&] {
+      count, arguments,
+      "lidar_cost [SCENE [SENSOR [POSES [TURNS [METHODS [CHECKED]]]]]]; default: city100 lidar64x1024 20 7", [&] {
         const char* const isa = std::getenv("LIDAR_ISA");
         if (isa != nullptr && std::string(isa) == "avx2") hwy::DisableTargets(HWY_AVX2 - 1);
         const auto word = [&](int i, const char* fallback) { return std::string(i < count ? arguments[i] : fallback); };
         return sf::bench::run(word(1, "city100"), word(2, "lidar64x1024"), std::atoi(word(3, "20").c_str()),
-                              static_cast<std::size_t>(std::atoi(word(4, "7").c_str())), word(5, ""));
+                              static_cast<std::size_t>(std::atoi(word(4, "7").c_str())), word(5, ""),
+                              std::max(1, std::atoi(word(6, "2000").c_str())));
       });
 }

@@ -57,7 +57,7 @@ int run(const std::string& scene_name, const std::string& sensor, int robots, in
   const scene::SurfaceTree tree = scene::build_tree(scene.mesh);
   const scene::Instance instance{&tree, {}, true};
   const scene::SceneView view{{&instance, 1}, false};
-  const scene::BeamPattern pattern = scene::make_pattern(beams, row);
+  const scene::BeamPattern pattern = lidar_pattern(beams, row);
   gpu::Device device;
   scene::DeviceRasterizer kernel(device);
   gpu::Batch batch(device);

@@ -136,7 +136,7 @@ std::size_t run(const Case& c, std::size_t beams_wanted) {
   const scene::Instance instance{&tree, X_WI, !c.turned};
   const scene::SceneView view =
       c.field ? scene::SceneView{{}, false, {&scene.field, {}}} : scene::SceneView{{&instance, 1}, false, {}};
-  const scene::BeamPattern pattern = scene::make_pattern(beams, row);
+  const scene::BeamPattern pattern = lidar_pattern(beams, row);
   scene::Rasterizer rasterizer;
   Faces faces(scene.mesh, X_WI);
   Errors exact, single;

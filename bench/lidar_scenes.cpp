@@ -1,5 +1,6 @@
 #include "bench/lidar_scenes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -213,6 +214,14 @@ std::vector<dvec3> lidar_beams(const std::string& name, std::uint32_t& row) {
   }
   if (beams.empty()) throw std::invalid_argument("no sensor " + name + "; expected lidarRxC or cameraWxH");
   return beams;
+}
+
+scene::BeamPattern lidar_pattern(std::span<const dvec3> beams, std::uint32_t row) {
+  if (row > 0) return scene::make_pattern(beams, row);
+  const auto height_of = [](const dvec3& d) { return d.z / d.x; };  // in the image
+  const auto width =
+      std::ranges::find_if(beams, [&](const dvec3& d) { return std::abs(height_of(d) - height_of(beams[0])) > 1e-9; });
+  return scene::make_image_pattern(beams, static_cast<std::uint32_t>(width - beams.begin()));
 }
 
 }  // namespace sf::bench

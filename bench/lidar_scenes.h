@@ -2,10 +2,12 @@
 // Scenes and patterns of the lidar benchmark.
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/rigid_transform.h"
+#include "scene/beam_pattern.h"
 #include "scene/height_field.h"
 #include "scene/mesh.h"
 #include "world/world.h"
@@ -26,7 +28,9 @@ struct LidarScene {
 LidarScene lidar_scene(const std::string& name, int poses);
 
 /// @param name `lidarRxC` (R rings of C columns over 45 degrees, up to 16 rings 30 degrees) or `cameraWxH` (90 degrees)
-/// @param row out: length of a ring; 0: none
+/// @param row out: length of a ring; 0: an image
 std::vector<glm::dvec3> lidar_beams(const std::string& name, std::uint32_t& row);
+/// Their pattern, or that of some columns of rings. @param row 0: an image
+scene::BeamPattern lidar_pattern(std::span<const glm::dvec3> beams, std::uint32_t row);
 
 }  // namespace sf::bench

@@ -31,6 +31,7 @@ class Grouping {
   }
   /// @param times as make_pattern's
   BeamPattern make(std::span<const double> times);
+  BeamPattern make_image(std::uint32_t width);
 
  private:
   using Range = std::pair<std::size_t, std::size_t>;
@@ -42,6 +43,7 @@ class Grouping {
   glm::dvec3 mean(Range range) const;
   DirectionBox box_of(Range range) const;
   void write_tile(std::span<const Range> vectors, BeamTile& tile) const;
+  void write_tiles(std::span<const Range> vectors, double time, BeamPattern& pattern);
   std::vector<Range> equal_times(std::span<const double> times);
 
   std::span<const glm::dvec3> directions_;
@@ -193,23 +195,24 @@ void Grouping::write_tile(std::span<const Range> vectors, BeamTile& tile) const 
   const DirectionBox all = box_of({vectors.front().first, vectors.back().second});
   write_box(all, tile.tile, 0);
   tile.longest = static_cast<float>(all.longest * 1.000001);
-  tile.consecutive = true;
+  std::uint32_t run = kWidth;
   tile.used = static_cast<std::uint32_t>(vectors.size());
   for (std::uint32_t v = 0; v < kTileVectors; ++v) {
     const Range range = vectors[std::min<std::size_t>(v, vectors.size() - 1)];
     const DirectionBox box = box_of(range);
     write_box(box, tile.vectors, v);
     tile.longest = std::max(tile.longest, static_cast<float>(box.longest * 1.000001));
-    if (range.second - range.first < kWidth) tile.consecutive = false;
+    if (range.second - range.first < kWidth) run = 1;
     for (std::uint32_t i = 0; i < kWidth; ++i) {
       const std::uint32_t at = kWidth * v + i, beam = order_[std::min(range.first + i, range.second - 1)];
       const glm::dvec3 d = directions_[beam];
       tile.dx[at] = d.x, tile.dy[at] = d.y, tile.dz[at] = d.z;
       tile.x[at] = static_cast<float>(d.x), tile.y[at] = static_cast<float>(d.y), tile.z[at] = static_cast<float>(d.z);
       tile.place[at] = beam;
-      if (i > 0 && beam != tile.place[at - 1] + 1) tile.consecutive = false;
+      if (i > 0 && beam != tile.place[at - 1] + 1) run = i % 4 == 0 ? std::min(run, 4u) : 1;
     }
   }
+  tile.run = run;
 }
 
 /// Sorts the beams by time. @return ranges with one time each
@@ -224,6 +227,15 @@ std::vector<Grouping::Range> Grouping::equal_times(std::span<const double> times
   return ranges;
 }
 
+void Grouping::write_tiles(std::span<const Range> vectors, double time, BeamPattern& pattern) {
+  for (const Range& vector : vectors) std::sort(order_.begin() + vector.first, order_.begin() + vector.second);
+  for (std::size_t first = 0; first < vectors.size(); first += kTileVectors) {
+    const std::size_t count = std::min<std::size_t>(kTileVectors, vectors.size() - first);
+    write_tile(vectors.subspan(first, count), pattern.emplace_back());
+    pattern.back().time = time;
+  }
+}
+
 BeamPattern Grouping::make(std::span<const double> times) {
   BeamPattern pattern;
   const double weight = tile_weight();
@@ -233,14 +245,33 @@ BeamPattern Grouping::make(std::span<const double> times) {
     for (const Range& group : groups) {
       std::vector<Range> vectors;
       split(group, kWidth, along_row() && times.empty() ? 16.0 : 1.0, vectors);
-      for (const Range& vector : vectors) std::sort(order_.begin() + vector.first, order_.begin() + vector.second);
-      for (std::size_t first = 0; first < vectors.size(); first += kTileVectors) {
-        const std::size_t count = std::min<std::size_t>(kTileVectors, vectors.size() - first);
-        write_tile(std::span(vectors).subspan(first, count), pattern.emplace_back());
-        if (!times.empty()) pattern.back().time = times[order_[range.first]];
-      }
+      write_tiles(vectors, times.empty() ? 0.0 : times[order_[range.first]], pattern);
     }
   }
+  return pattern;
+}
+
+/// Lists pixels in strips of 16 rows, to the right and back, each in stripes of four columns, down and up.
+BeamPattern Grouping::make_image(std::uint32_t width) {
+  constexpr std::uint32_t kRows = 16, kColumns = 4;
+  const auto height = static_cast<std::uint32_t>(directions_.size() / width);
+  const std::uint32_t stripes = (width + kColumns - 1) / kColumns;
+  order_.clear();
+  for (std::uint32_t top = 0, strip = 0; top < height; top += kRows, ++strip)
+    for (std::uint32_t k = 0; k < stripes; ++k) {
+      const std::uint32_t left = kColumns * (strip % 2 == 0 ? k : stripes - 1 - k),
+                          rows = std::min(kRows, height - top);
+      for (std::uint32_t r = 0; r < rows; ++r)
+        for (std::uint32_t u = left; u < std::min(width, left + kColumns); ++u)
+          order_.push_back(width * (top + (k % 2 == 0 ? r : rows - 1 - r)) + u);
+    }
+  std::vector<Range> vectors;
+  for (std::size_t first = 0; first < order_.size(); first += kWidth)
+    vectors.push_back({first, std::min(order_.size(), first + kWidth)});
+  for (std::size_t first = 0; first < order_.size(); first += kTileBeams)
+    if (!narrow({first, std::min(order_.size(), first + kTileBeams)}, kLeastCosine)) return make({});
+  BeamPattern pattern;
+  write_tiles(vectors, 0.0, pattern);
   return pattern;
 }
 
@@ -248,6 +279,10 @@ BeamPattern Grouping::make(std::span<const double> times) {
 
 BeamPattern make_pattern(std::span<const glm::dvec3> directions, std::uint32_t row, std::span<const double> times) {
   return Grouping(directions, row).make(times);
+}
+
+BeamPattern make_image_pattern(std::span<const glm::dvec3> directions, std::uint32_t width) {
+  return Grouping(directions, 0).make_image(width);
 }
 
 }  // namespace sf::scene

@@ -30,10 +30,10 @@ struct alignas(64) BeamTile {
   alignas(64) std::uint32_t place[kTileBeams];                        ///< index of the beam in the scan
   DirectionBoxes<kTileVectors> vectors;                               ///< boxes of the vectors
   DirectionBoxes<1> tile;                                             ///< box of all
-  float longest = 1.0f;      ///< largest norm of a direction in any of the boxes
-  bool consecutive = false;  ///< the beams of each vector follow each other in the scan
-  std::uint32_t used = 0;    ///< vectors, in [1, kTileVectors]; the others repeat the last one and are not cast
-  double time = 0.0;         ///< [s] of all of its beams, relative to the reading
+  float longest = 1.0f;    ///< largest norm of a direction in any of the boxes
+  std::uint32_t run = 1;   ///< 16, 4 or 1: groups of so many beams of each vector follow each other in the scan
+  std::uint32_t used = 0;  ///< vectors, in [1, kTileVectors]; the others repeat the last one and are not cast
+  double time = 0.0;       ///< [s] of all of its beams, relative to the reading
 };
 
 using BeamPattern = std::vector<BeamTile>;
@@ -43,5 +43,9 @@ using BeamPattern = std::vector<BeamTile>;
 ///            elevation (a lidar's ring); 0: vectors should be square
 /// @param times [s] of the beams relative to the reading, those of a tile are equal; empty: all 0
 BeamPattern make_pattern(std::span<const glm::dvec3> directions, std::uint32_t row, std::span<const double> times = {});
+
+/// Pattern of an image: tiles of 32 x 16 pixels, vectors of 4 x 4.
+/// @param directions as make_pattern's, row by row  @param width [px]
+BeamPattern make_image_pattern(std::span<const glm::dvec3> directions, std::uint32_t width);
 
 }  // namespace sf::scene

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <optional>
+#include <type_traits>
 
 #include "scene/rasterizer/scratch.h"
 #include "scene/texture_map.h"
@@ -30,6 +31,7 @@ class Scan {
       terrain_.emplace(*scene.terrain.field, base::relative(scene.terrain.X_WF, X_WS), range_max);
     if (terrain_ && terrain_->side > 0) build_horizon(*terrain_, horizon_);
     for (const SceneMesh& mesh : s.meshes) textured_ = textured_ || !mesh.tree->mesh.coordinates.empty();
+    set_spheres();
   }
   /// @param next tile that will be cast
   bool cast(const BeamTile& tile, const BeamTile& next);
@@ -48,6 +50,7 @@ class Scan {
   void begin(const BeamTile& tile, std::uint32_t vectors);
   void draw_floor(const BeamTile& tile, std::uint32_t vectors);
   void take(const BeamTile& tile, std::uint32_t vector, std::span<const CastBeam, kWidth> cast);
+  void set_spheres();
   void list_meshes(const BeamTile& tile);
   void measure(const BeamTile& tile, std::uint32_t vector);
   void evaluate_vector(const BeamTile& tile, std::uint32_t vector);
@@ -146,17 +149,32 @@ void Scan::draw_floor(const BeamTile& tile, std::uint32_t vectors) {
   }
 }
 
+void Scan::set_spheres() {
+  s_.spheres.resize((s_.meshes.size() + kWidth - 1) / kWidth);
+  for (std::size_t i = 0; i < kWidth * s_.spheres.size(); ++i) {
+    const SceneMesh mesh = i < s_.meshes.size() ? s_.meshes[i] : SceneMesh{.reach = -HUGE_VAL};
+    MeshSpheres& out = s_.spheres[i / kWidth];
+    for (int axis = 0; axis < 3; ++axis) out.centre[axis][i % kWidth] = static_cast<float>(mesh.centre[axis]);
+    out.reach[i % kWidth] = static_cast<float>(mesh.reach + 1e-6 * (glm::length(mesh.centre) + mesh.reach));
+  }
+}
+
 /// Lists the meshes of which the tile may see something, from near to far.
 void Scan::list_meshes(const BeamTile& tile) {
   s_.in_view.clear();
-  for (const SceneMesh& mesh : s_.meshes) {
-    const auto along = [&](const float(*n)[1]) {
-      return n[0][0] * mesh.centre.x + n[1][0] * mesh.centre.y + n[2][0] * mesh.centre.z;
-    };
-    bool inside = true;
-    for (int k = 0; k < 4 && inside; ++k) inside = along(tile.tile.plane + 3 * k) >= -mesh.reach;
-    if (inside)
-      s_.in_view.push_back({along(tile.tile.axis) - mesh.reach, static_cast<std::uint32_t>(&mesh - s_.meshes.data())});
+  for (std::uint32_t first = 0; const MeshSpheres& spheres : s_.spheres) {
+    const Floats x = load(spheres.centre[0]), y = load(spheres.centre[1]), z = load(spheres.centre[2]),
+                 outside = all(0.0f) - load(spheres.reach);
+    const auto along = [&](const float(*n)[1]) { return dot(all(n[0][0]), all(n[1][0]), all(n[2][0]), x, y, z); };
+    Mask inside = at_least(along(tile.tile.plane), outside);
+    for (int k = 3; k < 12; k += 3) inside = both(inside, at_least(along(tile.tile.plane + k), outside));
+    alignas(64) float depths[kWidth];
+    store(along(tile.tile.axis) + outside, depths);
+    for (std::uint32_t rest = bits_of(inside); rest != 0; rest &= rest - 1) {
+      const auto k = static_cast<std::uint32_t>(__builtin_ctz(rest));
+      s_.in_view.push_back({depths[k], first + k});
+    }
+    first += kWidth;
   }
   std::sort(s_.in_view.begin(), s_.in_view.end(), [](const auto& a, const auto& b) { return a.depth < b.depth; });
 }
@@ -254,12 +272,20 @@ void Scan::measure(const BeamTile& tile, std::uint32_t vector) {
 void Scan::write(const BeamTile& tile, std::uint32_t vector) {
   const std::uint32_t first = kWidth * vector;
   const std::uint32_t* const place = tile.place + first;
-  if (tile.consecutive) {
-    std::memcpy(&out_.ranges[place[0]], ranges_, sizeof ranges_);
-    std::memcpy(&out_.hits[place[0]], hits_, sizeof hits_);
-  } else {
-    for (std::uint32_t i = 0; i < kWidth; ++i) out_.ranges[place[i]] = ranges_[i], out_.hits[place[i]] = hits_[i];
-  }
+  if (out_.sink != nullptr) write_surfaces(tile, vector);
+  if (out_.depth_max > 0.0) to_depths(tile, first, out_.depth_max, ranges_, hits_);
+  const auto write_runs = [&](auto run) {
+    for (std::uint32_t i = 0; i < kWidth; i += run) {
+      std::memcpy(&out_.ranges[place[i]], ranges_ + i, run * sizeof *ranges_);
+      std::memcpy(&out_.hits[place[i]], hits_ + i, run * sizeof *hits_);
+    }
+  };
+  if (tile.run == kWidth)
+    write_runs(std::integral_constant<std::uint32_t, kWidth>());
+  else if (tile.run == 4)
+    write_runs(std::integral_constant<std::uint32_t, 4>());
+  else
+    write_runs(std::integral_constant<std::uint32_t, 1>());
   if (!out_.cosines.empty())
     for (std::uint32_t i = 0; i < kWidth; ++i)
       out_.cosines[place[i]] = hits_[i] == base::kNoHit ? 0.0f : static_cast<float>(std::min(1.0, std::abs(sines_[i])));
@@ -267,7 +293,6 @@ void Scan::write(const BeamTile& tile, std::uint32_t vector) {
     for (std::uint32_t i = 0; i < kWidth; ++i) out_.normals[place[i]] = normal_of(hits_[i], first + i);
   if (!out_.materials.empty())
     for (std::uint32_t i = 0; i < kWidth; ++i) out_.materials[place[i]] = material_of(hits_[i], first + i);
-  if (out_.sink != nullptr) write_surfaces(tile, vector);
   flagged_ = flagged_ || grazing_ != 0;
   for (; grazing_ != 0; grazing_ &= grazing_ - 1)
     out_.quality[place[__builtin_ctz(grazing_)]] = base::QualityFlag::grazing;
@@ -346,7 +371,7 @@ void Scan::draw(const BeamTile& tile, std::uint32_t vectors) {
   begin(tile, vectors);
   list_meshes(tile);
   for (const MeshInView& near : s_.in_view) {
-    if (near.depth > static_cast<double>(depth_limit(farthest_of(s_)))) break;
+    if (near.depth > depth_limit(farthest_of(s_))) break;
     draw_mesh(s_, tile, s_.meshes[near.row]);
   }
 }

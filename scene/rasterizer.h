@@ -94,8 +94,11 @@ struct ScanOutput {
   /// wanted.
   std::span<glm::vec3> normals = {};
   std::span<std::uint32_t> materials =
-      {};                    ///< of the faces (Mesh::materials), or world::kNoMaterial. Empty: not wanted
-  bool single = false;       ///< ranges of meshes and the floor in 32 bits where these are within kSingleRangeError
+      {};               ///< of the faces (Mesh::materials), or world::kNoMaterial. Empty: not wanted
+  bool single = false;  ///< ranges of meshes and the floor in 32 bits where these are within kSingleRangeError
+  /// [m] > 0: instead of ranges, depths along the sensor's x axis, depth_max where nothing is nearer. All beams reach
+  /// it within range_max. The sink gets ranges.
+  double depth_max = 0.0;
   TileSink* sink = nullptr;  ///< null: none
 };
 

@@ -37,10 +37,12 @@ std::vector<SpatialScanner> scanners_of(const std::vector<CameraSettings>& camer
     scanners.push_back({.X_MS = s.X_MS,
                         .range_max = s.range_max * stretch(s) * (1.0 + 1e-12),
                         .beams = s.beams,
+                        .plain = s.columns() == 1 && s.samples == 1 && s.beams->cast.empty(),
                         .normals = s.normals,
                         .materials = s.rgb,
                         .follows = s.rgb,
-                        .single = s.mode != 0});
+                        .single = s.mode != 0,
+                        .depth_max = s.range_max});
   return scanners;
 }
 
@@ -65,6 +67,7 @@ class Cameras : public SpatialScans {
   void follow(std::size_t sample, const base::RigidTransform& X_WS, const scene::BeamTile& tile,
               const scene::TileSurfaces& surfaces, unsigned thread) override;
   void finish(std::size_t sample, unsigned thread) override;
+  void write_pixels(std::size_t sample);
   std::uint32_t color_of(std::size_t sample, std::size_t pixel, std::span<const glm::vec3> light) const;
 
   const std::vector<CameraSettings>& settings_;
@@ -173,7 +176,20 @@ void see_nothing(const CameraSettings& s, std::span<double> values, std::span<st
   for (std::size_t i = 0; i < values.size(); i += s.columns()) values[i] = s.range_max;
 }
 
+/// Flags surfaces nearer than the smallest depth. @param step numbers per pixel
+void flag_near(double least, std::span<double> values, std::size_t step, std::span<base::QualityFlag> quality) {
+  for (std::size_t k = 0; k < quality.size(); ++k)
+    if (double& depth = values[k * step]; depth < least) depth = least, quality[k] = base::QualityFlag::too_near;
+}
+
 void Cameras::finish(std::size_t i, unsigned) {
+  if (!scanner_of(i).plain) write_pixels(i);
+  if (const double least = settings_[samples()[i].row].range_min; least > 0.0)
+    flag_near(least, samples()[i].values, settings_[samples()[i].row].columns(), quality_of(i));
+}
+
+/// Writes the pixels of a camera that is not plain.
+void Cameras::write_pixels(std::size_t i) {
   const HostSample& sample = samples()[i];
   const CameraSettings& s = settings_[sample.row];
   const scene::ScanOutput from = output_of(i);
@@ -187,14 +203,11 @@ void Cameras::finish(std::size_t i, unsigned) {
   const auto colors = s.rgb && plain ? parts_of(part_colors_, i) : std::span<std::uint32_t>();
   for (std::size_t c = 0; c < from.ranges.size() / parts; ++c) {
     const std::size_t k = cast.empty() ? c : cast[c], first = c * parts;
-    const double depth = from.ranges[first] * s.beams->directions[k].x;
-    const bool seen = from.hits[first] != base::kNoHit && depth < s.range_max;
-    hits[k] = seen ? from.hits[first] : base::kNoHit;
-    quality[k] = seen && depth < s.range_min ? base::QualityFlag::too_near : from.quality[first];
     const std::span<double> pixel = sample.values.subspan(k * width, width);
-    pixel[0] = seen ? std::max(depth, s.range_min) : s.range_max;
+    hits[k] = from.hits[first], quality[k] = from.quality[first];
+    pixel[0] = from.ranges[first];
     if (width > 1) pixel[1] = !s.rgb ? 0.0 : plain ? colors[c] : color_of(i, k, light.subspan(first, parts));
-    const glm::vec3 normal = seen && s.normals ? from.normals[first] : glm::vec3{};
+    const glm::vec3 normal = s.normals ? from.normals[first] : glm::vec3{};
     for (std::size_t axis = 0; axis + 2 < width; ++axis) pixel[2 + axis] = normal[static_cast<int>(axis)];
   }
 }

@@ -189,7 +189,10 @@ std::shared_ptr<const LidarBeams> CameraReader::beams_of(const world::Sensor& se
   made->channels = s.height;
   made->parts = s.samples;
   if (s.samples > 1 || !made->cast.empty()) add_parts(lens, s, *made);
-  made->pattern = scene::make_pattern(made->cast_directions(), 0, times_of(s, *made));
+  const std::vector<double> times = times_of(s, *made);
+  made->pattern = made->part_directions.empty() && times.empty()
+                      ? scene::make_image_pattern(made->directions, s.width)
+                      : scene::make_pattern(made->cast_directions(), 0, times);
   return known_.emplace_back(image, std::move(made)).second;
 }
 

@@ -60,6 +60,7 @@ std::vector<SpatialScanner> scanners_of(const std::vector<LidarSettings>& lidars
                         .angle = kLidarAngles[s.mode],
                         .beams = s.beams,
                         .plain = is_plain(s),
+                        .cosines = !is_plain(s),
                         .materials = powers,
                         .single = kLidarSingle[s.mode]});
   }

@@ -135,7 +135,7 @@ LidarBeams beams_of(const LidarLayout& layout) {
   beams.in_place = true;
   for (scene::BeamTile& tile : beams.pattern) {
     for (std::uint32_t& place : tile.place) place = beams.cast[place];
-    tile.consecutive = false;
+    tile.run = 1;
   }
   return beams;
 }

@@ -47,15 +47,16 @@ SpatialScans::SpatialScans(const SensorContext& context, const SensorType& type,
       rasterizers_(context.thread_pool.threads()),
       trails_(context.world, context.states, longest_scan(scanners_)),
       moved_(rasterizers_.size()) {
-  bool normals = false;
+  bool cosines = false, normals = false;
   for (const SpatialScanner& s : scanners_) {
     first_beam_.push_back(first_beam_.back() + s.beams->directions.size());
     first_part_.push_back(first_part_.back() + (s.plain ? 0 : s.beams->placed_directions().size()));
-    normals = normals || s.normals;
+    cosines = cosines || s.cosines, normals = normals || s.normals;
   }
   hits_.resize(first_beam_.back()), quality_.resize(first_beam_.back());
   const std::size_t parts = first_part_.back();
-  part_ranges_.resize(parts), part_cosines_.resize(parts), part_hits_.resize(parts), part_quality_.resize(parts);
+  part_ranges_.resize(parts), part_hits_.resize(parts), part_quality_.resize(parts);
+  if (cosines) part_cosines_.resize(parts);
   if (normals) part_normals_.resize(parts);
   if (!materials().empty()) part_materials_.resize(parts);
   if (raycast::choose_caster(context.device.info().software, context.scene.caster).on_device)
@@ -170,11 +171,10 @@ void SpatialScans::cast_rolling(const Job& job, std::span<const scene::BeamTile>
 scene::ScanOutput SpatialScans::output_of(std::size_t i) {
   const HostSample& sample = samples()[i];
   const SpatialScanner& s = scanners_[sample.row];
-  if (s.plain)
-    return {.ranges = sample.values, .hits = beams_of(hits_, i), .quality = beams_of(quality_, i), .single = s.single};
-  scene::ScanOutput out{parts_of(part_ranges_, i), parts_of(part_hits_, i), parts_of(part_quality_, i),
-                        parts_of(part_cosines_, i)};
-  out.single = s.single;
+  scene::ScanOutput out{sample.values, beams_of(hits_, i), beams_of(quality_, i)};
+  if (!s.plain) out = {parts_of(part_ranges_, i), parts_of(part_hits_, i), parts_of(part_quality_, i)};
+  out.single = s.single, out.depth_max = s.depth_max;
+  if (s.cosines) out.cosines = parts_of(part_cosines_, i);
   if (s.normals) out.normals = parts_of(part_normals_, i);
   if (s.materials && !s.follows && !part_materials_.empty()) out.materials = parts_of(part_materials_, i);
   return out;
@@ -203,11 +203,15 @@ void SpatialScans::cast_reference(const base::RigidTransform& X_WS, const scene:
     const auto hit = scene::reference_scan(X_WS, s.beams->placed_directions()[i], s.range_max, view);
     out.ranges[i] = surfaces.ranges[k] = static_cast<double>(hit.range);
     out.hits[i] = surfaces.hits[k] = hit.owner;
+    if (out.depth_max > 0.0) {
+      out.ranges[i] = std::min(surfaces.ranges[k] * tile.dx[k], out.depth_max);
+      if (out.ranges[i] == out.depth_max) out.hits[i] = base::kNoHit;
+    }
     surfaces.x[k] = hit.normal.x, surfaces.y[k] = hit.normal.y, surfaces.z[k] = hit.normal.z;
     surfaces.materials[k] = hit.material;
     surfaces.u[k] = hit.coordinates.x, surfaces.v[k] = hit.coordinates.y, surfaces.spread[k] = hit.spread;
     if (!out.cosines.empty()) out.cosines[i] = static_cast<float>(hit.cosine);
-    if (!out.normals.empty()) out.normals[i] = hit.normal;
+    if (!out.normals.empty()) out.normals[i] = out.hits[i] == base::kNoHit ? glm::vec3{} : hit.normal;
     if (!out.materials.empty()) out.materials[i] = hit.material;
   }
   if (out.sink != nullptr) out.sink->take(tile, surfaces);
@@ -231,9 +235,14 @@ void SpatialScans::cast_tiles(const base::RigidTransform& X_WS, std::span<const 
 }
 
 void SpatialScans::measure_all() {
-  for (std::size_t i = 0; i < samples().size(); ++i) std::ranges::fill(output_of(i).quality, base::QualityFlag::none);
+  const auto clear = [this](std::size_t i) { std::ranges::fill(output_of(i).quality, base::QualityFlag::none); };
+  const std::size_t count = samples().size();
+  if (jobs_.size() == count)  // one per sample, finished while its hits are in the cache
+    return thread_pool().parallel_for_each(
+        count, 1, [&](std::size_t i, unsigned thread) { clear(i), cast(jobs_[i], thread), finish(i, thread); });
+  for (std::size_t i = 0; i < count; ++i) clear(i);
   thread_pool().parallel_for_each(jobs_.size(), 1, [&](std::size_t i, unsigned thread) { cast(jobs_[i], thread); });
-  thread_pool().parallel_for_each(samples().size(), 1, [&](std::size_t i, unsigned thread) { finish(i, thread); });
+  thread_pool().parallel_for_each(count, 1, [&](std::size_t i, unsigned thread) { finish(i, thread); });
 }
 
 void SpatialScans::collect(std::span<base::ReadingBlock> out) {

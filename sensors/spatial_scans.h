@@ -24,10 +24,12 @@ struct SpatialScanner {
   double angle = 0.0;         ///< [rad] as SpatialScene::list
   std::shared_ptr<const LidarBeams> beams;
   bool plain = false;      ///< beams are cast into the reading's values
-  bool normals = false;    ///< also casts the normals of surfaces
+  bool cosines = false;    ///< also casts the cosines of angles of incidence,
+  bool normals = false;    ///< and the normals of surfaces
   bool materials = false;  ///< surfaces have their materials, which are also cast,
   bool follows = false;    ///< or passed to `follow` with texture coordinates
   bool single = false;     ///< as scene::ScanOutput::single
+  double depth_max = 0.0;  ///< as scene::ScanOutput::depth_max
 };
 
 /// Not thread-safe.
@@ -118,9 +120,9 @@ class SpatialScans : public HostBackend {
   std::vector<std::size_t> first_beam_;  ///< per row, plus one: index of its first beam in these tables
   // Of the parts of the cast beams of sensors that are not plain.
   std::vector<double> part_ranges_;  ///< [m]
-  std::vector<float> part_cosines_;
   std::vector<std::uint32_t> part_hits_;
   std::vector<base::QualityFlag> part_quality_;
+  std::vector<float> part_cosines_;             ///< empty unless a sensor uses them
   std::vector<glm::vec3> part_normals_;         ///< empty unless a sensor uses them
   std::vector<std::uint32_t> part_materials_;   ///< empty unless a sensor uses them
   std::vector<std::size_t> first_part_;         ///< per row, plus one

@@ -25,7 +25,6 @@ HWY_INLINE Beams load_beams(const Directions& from, const Scratch& s, std::uint3
   return {load(from.x + i), load(from.y + i),   load(from.z + i), load(s.low + i),
           load(s.high + i), load(s.others + i), load(s.face + i)};
 }
-HWY_INLINE Beams load_beams(const Scratch& s, std::uint32_t vector) { return load_beams(s, s, vector); }
 
 HWY_INLINE void store_beams(Scratch& s, std::uint32_t vector, const Beams& b) {
   const std::uint32_t i = kWidth * vector;
@@ -69,10 +68,17 @@ HWY_INLINE Extent inside_of(const Edge& edge, const Floats (&box)[9]) {
 }
 
 /// Draws the faces of a leaf in one group of sixteen vectors.
+template <class Directions>
 class LeafDrawing {
  public:
-  LeafDrawing(Scratch& s, const BeamTile& tile, std::uint32_t first_face)
-      : s_(s), view_(s.leaf), first_face_(first_face), longest_(tile.longest) {}
+  /// @param from has the beams and boxes in the frame of Scratch::leaf: `s`, or `tile` in the sensor's frame
+  LeafDrawing(Scratch& s, const Directions& from, const BeamTile& tile, const SceneMesh& mesh)
+      : s_(s),
+        from_(from),
+        view_(s.leaf),
+        planes_(mesh.tree->planes.data()),
+        first_face_(mesh.first_face),
+        longest_(tile.longest) {}
 
   /// Returns those of sixteen faces that boxes of directions may see. @param farthest [1/m] nearest certain hit
   HWY_INLINE std::uint32_t faces_seen(const Floats (&box)[9], float farthest) const {
@@ -87,14 +93,13 @@ class LeafDrawing {
   /// All faces in one vector.
   HWY_INLINE void draw_vector(std::uint32_t v, std::uint32_t faces) {
     Floats box[9];
-    for (int i = 0; i < 9; ++i) box[i] = all(s_.vectors.box[i][v]);
+    for (int i = 0; i < 9; ++i) box[i] = all(from_.vectors.box[i][v]);
     faces &= faces_seen(box, s_.farthest[v]);
     if (faces == 0) return;
-    Beams beams = load_beams(s_, v);
+    Beams beams = load_beams(from_, s_, v);
     for (; faces != 0; faces &= faces - 1) {
       const auto k = static_cast<std::uint32_t>(__builtin_ctz(faces));
-      const std::uint32_t face = first_face_ + view_.face[k];
-      s_.drawn.push_back({face, 1u << v});
+      const std::uint32_t face = list_face(k, 1u << v);
       draw<false>(view_, k, 1.0f, face, beams);
     }
     store_beams(s_, v, beams);
@@ -110,11 +115,10 @@ class LeafDrawing {
     std::uint32_t seen =
         wanted & bits_of(both(at_least(inside.high + error, all(0.0f)), at_least(high, load(s_.farthest + g))));
     if (seen == 0) return;
-    const std::uint32_t covered = bits_of(greater(inside.low, error)), face = first_face_ + view_.face[k];
-    s_.drawn.push_back({face, seen << g});
+    const std::uint32_t covered = bits_of(greater(inside.low, error)), face = list_face(k, seen << g);
     for (; seen != 0; seen &= seen - 1) {
       const auto v = static_cast<std::uint32_t>(__builtin_ctz(seen));
-      Beams beams = load_beams(s_, g + v);
+      Beams beams = load_beams(from_, s_, g + v);
       if ((covered >> v & 1) != 0)
         draw<true>(view_, k, 1.0f, face, beams);
       else
@@ -125,31 +129,41 @@ class LeafDrawing {
 
   /// A face seen edge-on, in either orientation.
   HWY_INLINE void draw_edge_on(std::uint32_t k, std::uint32_t vectors) {
-    const std::uint32_t face = first_face_ + view_.face[k];
-    s_.drawn.push_back({face, vectors});
+    const std::uint32_t face = list_face(k, vectors);
     for (; vectors != 0; vectors &= vectors - 1) {
       const auto v = static_cast<std::uint32_t>(__builtin_ctz(vectors));
-      Beams beams = load_beams(s_, v);
+      Beams beams = load_beams(from_, s_, v);
       draw<false>(view_, k, 1.0f, face, beams), draw<false>(view_, k, -1.0f, face, beams);
       store_beams(s_, v, beams);
     }
   }
 
  private:
+  /// Lists a face that is drawn, and prefetches its plane. @return its number
+  HWY_INLINE std::uint32_t list_face(std::uint32_t k, std::uint32_t vectors) {
+    const std::uint32_t row = view_.face[k];
+    prefetch(planes_ + row, sizeof(Plane));
+    s_.drawn.push_back({first_face_ + row, vectors});
+    return first_face_ + row;
+  }
+
   Scratch& s_;
+  const Directions& from_;
   const LeafView& view_;
+  const Plane* planes_;
   std::uint32_t first_face_;
   float longest_;  ///< BeamTile::longest
 };
 
-/// Draws a leaf's faces. @param vectors bit mask of the vectors that may see the leaf
-HWY_INLINE void draw_leaf(Scratch& s, const BeamTile& tile, const LeafFaces& faces, std::uint32_t first_face,
-                          std::uint32_t vectors, float farthest) {
-  LeafDrawing drawing(s, tile, first_face);
+/// Draws a leaf's faces. @param from as LeafDrawing's  @param vectors bit mask of the vectors that may see the leaf
+template <class Directions>
+HWY_INLINE void draw_leaf(Scratch& s, const Directions& from, const BeamTile& tile, const SceneMesh& mesh,
+                          const LeafFaces& faces, std::uint32_t vectors, float farthest) {
+  LeafDrawing drawing(s, from, tile, mesh);
   std::uint32_t open = faces.open;
   if (__builtin_popcount(vectors) > 2) {  // the tile's box first
     Floats box[9];
-    for (int i = 0; i < 9; ++i) box[i] = all(s.tile.box[i][0]);
+    for (int i = 0; i < 9; ++i) box[i] = all(from.tile.box[i][0]);
     open &= drawing.faces_seen(box, farthest);
   }
   for (std::uint32_t g = 0; g < kTileVectors && open != 0; g += kWidth) {
@@ -161,7 +175,7 @@ HWY_INLINE void draw_leaf(Scratch& s, const BeamTile& tile, const LeafFaces& fac
         drawing.draw_vector(g + static_cast<std::uint32_t>(__builtin_ctz(rest)), open);
     } else {
       Floats box[9];
-      for (int i = 0; i < 9; ++i) box[i] = load(s.vectors.box[i] + g);
+      for (int i = 0; i < 9; ++i) box[i] = load(from.vectors.box[i] + g);
       for (std::uint32_t rest = open; rest != 0; rest &= rest - 1)
         drawing.draw_face(static_cast<std::uint32_t>(__builtin_ctz(rest)), g, wanted, box);
     }

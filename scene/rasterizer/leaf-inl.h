@@ -71,6 +71,17 @@ HWY_INLINE LeafFaces view_leaf(Scratch& s, const TreeLeaf& leaf, const SceneMesh
   return {opened, used & ~opened};
 }
 
+/// Rotates the view of a leaf into the sensor's frame. Beams in that frame have the same bounds of errors.
+HWY_INLINE void turn_to_sensor(LeafView& view, const SceneMesh& mesh) {
+  const Rotation R(glm::transpose(mesh.X_FS.R));
+  const auto turn = [&](float(*v)[kWidth]) {
+    const Floats x = load(v[0]), y = load(v[1]), z = load(v[2]);
+    for (int k = 0; k < 3; ++k) store(R.row(k, x, y, z), v[k]);
+  };
+  for (int k = 0; k < 12; k += 3) turn(view.edge + k);
+  turn(view.inverse);
+}
+
 }  // namespace sf::scene::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

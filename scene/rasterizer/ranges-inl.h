@@ -67,10 +67,11 @@ HWY_INLINE std::uint32_t evaluate_several(const BeamTile& tile, std::uint32_t fi
   PlaneVectors rows[kWidth / kLanesD];
   for (PlaneVectors& row : rows) row = {zero, zero, zero, zero, zero, zero};
   Words owners = all(base::kNoHit);
+  const SeenPlane nothing{.height = range_max, .owner = base::kNoHit};
   for (std::uint32_t rest = (1u << kWidth) - 1; rest != 0;) {
     const std::uint32_t face = faces[__builtin_ctz(rest)];
     const bool none = face == kNoFace;
-    const SeenPlane plane = none ? SeenPlane{.height = range_max, .owner = base::kNoHit} : plane_of(face);
+    const SeenPlane& plane = none ? nothing : plane_of(face);
     const Mask meets = equal(load(faces), all(face));
     const std::uint32_t same = bits_of(meets);
     rest &= ~same;
@@ -87,6 +88,21 @@ HWY_INLINE std::uint32_t evaluate_several(const BeamTile& tile, std::uint32_t fi
   store(owners, hits);
   return evaluate(
       tile, first, range_max, [&](std::size_t i) -> const PlaneVectors& { return rows[i / kLanesD]; }, out, sines);
+}
+
+/// Turns sixteen ranges and hits into those of depths: ScanOutput::depth_max.
+HWY_INLINE void to_depths(const BeamTile& tile, std::uint32_t first, double depth_max, double* ranges,
+                          std::uint32_t* hits) {
+  const VD most = hn::Set(kD, depth_max);
+  std::uint32_t beyond = 0;
+  for (std::size_t i = 0; i < kWidth; i += hn::Lanes(kD)) {
+    const VD depth = hn::Mul(hn::Load(kD, ranges + i), hn::Load(kD, tile.dx + first + i));
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(kD, depth >= most, bits);
+    beyond |= std::uint32_t{bits[0]} << i;
+    hn::Store(hn::Min(depth, most), kD, ranges + i);
+  }
+  for (; beyond != 0; beyond &= beyond - 1) hits[__builtin_ctz(beyond)] = base::kNoHit;
 }
 
 /// A face for ranges in 32 bits.

@@ -19,9 +19,15 @@ struct LeafView {
   const std::uint32_t* face = nullptr;
 };
 
+/// Spheres around sixteen meshes, in the sensor's frame, with room for rounding.
+struct alignas(64) MeshSpheres {
+  float centre[3][kWidth];  ///< [m]
+  float reach[kWidth];      ///< [m] radius; negative infinity: unused
+};
+
 /// A mesh that a tile may see.
 struct MeshInView {
-  double depth = 0.0;     ///< [m] along the tile's axis, of its nearest point
+  float depth = 0.0f;     ///< [m] along the tile's axis, of its nearest point
   std::uint32_t row = 0;  ///< in Scratch::meshes
 };
 
@@ -45,6 +51,7 @@ struct Rasterizer::Scratch {
   std::vector<DrawnFace> drawn;       ///< in this tile
   std::vector<Candidate> candidates;  ///< of one vector
   std::vector<SceneMesh> meshes;      ///< of this scan, by first face
+  std::vector<MeshSpheres> spheres;   ///< of `meshes`
   std::vector<MeshInView> in_view;    ///< of this tile, from near to far
   ScanCounts counts;
 };

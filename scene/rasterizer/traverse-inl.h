@@ -103,10 +103,6 @@ HWY_INLINE float farthest_of(const Scratch& s) {
 /// Returns the same as a depth [m].
 HWY_INLINE float depth_limit(float farthest) { return 1.0001f / farthest; }
 
-HWY_INLINE void prefetch(const void* from, std::size_t bytes) {
-  for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(from) + i);
-}
-
 /// Prefetches a vector's part of a tile.
 HWY_INLINE void prefetch_beams(const BeamTile& tile, std::uint32_t vector) {
   constexpr std::size_t kBoxes = sizeof(tile.vectors) / kTileVectors;
@@ -116,20 +112,32 @@ HWY_INLINE void prefetch_beams(const BeamTile& tile, std::uint32_t vector) {
   prefetch(reinterpret_cast<const char*>(&tile.vectors) + kBoxes * vector, kBoxes);
 }
 
+/// Prefetches what the walk comes to next.
+HWY_INLINE void prefetch_next(const Scratch& s, const SurfaceTree& tree) {
+  if (s.stack.empty()) return;
+  const auto next = static_cast<std::uint32_t>(s.stack.back());
+  const std::int32_t child = tree.nodes[next / kWidth].child[next % kWidth];
+  if (child >= 0)
+    prefetch(&tree.nodes[child], sizeof(TreeNode));
+  else
+    prefetch(&tree.leaves[~child], sizeof(TreeLeaf));
+}
+
+/// Draws a mesh of one leaf, which is rotated to the beams.
+HWY_INLINE void draw_small_mesh(Scratch& s, const BeamTile& tile, const SceneMesh& mesh) {
+  const LeafFaces faces = view_leaf(s, mesh.tree->leaves.front(), mesh);
+  if ((faces.open | faces.edge_on) == 0) return;
+  turn_to_sensor(s.leaf, mesh);
+  draw_leaf(s, tile, tile, mesh, faces, used_vectors(tile), farthest_of(s));
+}
+
 /// Draws a mesh. Beams are rotated into its frame only if the tile may see a part of it.
 HWY_INLINE void draw_mesh(Scratch& s, const BeamTile& tile, const SceneMesh& mesh) {
   const SurfaceTree& tree = *mesh.tree;
+  if (tree.root < 0) return draw_small_mesh(s, tile, mesh);
   const std::uint32_t used = used_vectors(tile);
   float farthest = farthest_of(s);
-  const auto draw_one = [&](std::int32_t child, std::uint32_t vectors) {
-    const LeafFaces faces = view_leaf(s, tree.leaves[~child], mesh);
-    if ((faces.open | faces.edge_on) != 0) draw_leaf(s, tile, faces, mesh.first_face, vectors, farthest);
-  };
   aim_tile(s, tile, mesh);
-  if (tree.root < 0) {
-    aim_beams(s, tile, mesh);
-    return draw_one(tree.root, used);
-  }
   const TileCorners corners(s.tile);
   float limit = depth_limit(farthest);
   s.stack.clear();
@@ -147,16 +155,12 @@ HWY_INLINE void draw_mesh(Scratch& s, const BeamTile& tile, const SceneMesh& mes
     if (vectors == 0) continue;
     if (child >= 0) {
       push_children(s, corners, tree.nodes[child], child, limit);
-      if (!s.stack.empty()) {
-        const auto next = static_cast<std::uint32_t>(s.stack.back());
-        const std::int32_t ahead = tree.nodes[next / kWidth].child[next % kWidth];
-        if (ahead >= 0)
-          prefetch(&tree.nodes[ahead], sizeof(TreeNode));
-        else
-          prefetch(&tree.leaves[~ahead], sizeof(TreeLeaf));
-      }
+      prefetch_next(s, tree);
     } else {
-      draw_one(child, vectors);
+      prefetch_next(s, tree);
+      const LeafFaces faces = view_leaf(s, tree.leaves[~child], mesh);
+      if ((faces.open | faces.edge_on) == 0) continue;
+      draw_leaf(s, s, tile, mesh, faces, vectors, farthest);
       farthest = farthest_of(s);
       limit = depth_limit(farthest);
     }

@@ -127,6 +127,12 @@ HWY_INLINE Floats dot(const Floats& x, const Floats& y, const Floats& z, const F
   return muladd(x, a, muladd(y, b, z * c));
 }
 
+HWY_INLINE void prefetch(const void* from, std::size_t bytes) {
+  const auto* const first = static_cast<const char*>(from);
+  for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(first + i);
+  if (bytes % 64 != 0) __builtin_prefetch(first + bytes - 1);  // may be in a further line
+}
+
 }  // namespace sf::scene::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -49,8 +49,11 @@ RC_GTEST_PROP(SpatialRasterizer, AnyScene, ()) {
 
 /// No beam passes through a closed surface where faces meet: at vertices, along edges.
 TEST(SpatialRasterizer, IsWatertight) {
-  for (const glm::dvec3& at : {glm::dvec3{}, glm::dvec3{0.3, -0.2, 0.1}, glm::dvec3{1e7, -1e7, 10.0}}) {
-    Mesh mesh = sphere(at, 5.0, 12, 17);
+  for (const auto& [at, rows, columns] :
+       {std::tuple(glm::dvec3{}, 12u, 17u), std::tuple(glm::dvec3{0.3, -0.2, 0.1}, 12u, 17u),
+        std::tuple(glm::dvec3{1e7, -1e7, 10.0}, 12u, 17u),
+        std::tuple(glm::dvec3{0.3, -0.2, 0.1}, 3u, 4u)}) {  // one leaf, which is drawn in the sensor's frame
+    Mesh mesh = sphere(at, 5.0, rows, columns);
     const glm::dvec3 viewer = at + glm::dvec3{0.4, 0.3, -0.2};
     std::vector<glm::dvec3> beams;
     for (const glm::dvec3& vertex : mesh.vertices) beams.push_back(glm::normalize(vertex - viewer));
@@ -302,6 +305,39 @@ TEST(SpatialScan, SinksReceiveTheScan) {
   sink.out = &few, sink.normals.assign(beams.size(), {});
   Rasterizer().scan(X_WS, pattern, 40.0, scene, few);
   EXPECT_EQ(sink.normals, normals);
+}
+
+/// Images of all sizes, also those whose tiles are too wide and those with whole vectors: each pixel once, and the
+/// bytes of the general pattern. Depths are ranges along the axis, and hits end with them.
+TEST(SpatialRasterizer, ImagesHaveTheBytesOfAnyPattern) {
+  const SurfaceTree tree = build_tree(soup(60, 8.0, 3)), box = build_tree(soup(5, 8.0, 4));
+  const std::array instances{still(tree), Instance{&box, Posed(3, 2.0).X_WS, false}};
+  const SceneView scene{instances, true};
+  for (const auto& [width, height, focal] :
+       {std::tuple(1u, 1u, 1.0), std::tuple(5u, 3u, 3.0), std::tuple(33u, 18u, 16.0), std::tuple(64u, 40u, 40.0),
+        std::tuple(64u, 22u, 4.0)}) {
+    std::vector<glm::dvec3> beams;
+    for (std::uint32_t v = 0; v < height; ++v)
+      for (std::uint32_t u = 0; u < width; ++u)
+        beams.push_back(glm::normalize(glm::dvec3{focal, 0.5 * (width - 1.0) - u, 0.5 * (height - 1.0) - v}));
+    const BeamPattern pattern = make_image_pattern(beams, width);
+    const bool whole = width == 64 && focal > 30.0;
+    EXPECT_EQ(std::ranges::all_of(pattern, [](const BeamTile& t) { return t.run == 4; }), whole) << width;
+    const SpatialScan general = cast(Posed(5).X_WS, beams, 30.0, scene);
+    SpatialScan image{std::vector<double>(beams.size(), -1.0), std::vector<std::uint32_t>(beams.size(), 0xDEADu),
+                      std::vector<base::QualityFlag>(beams.size()), general.uncertain};
+    Rasterizer().scan(Posed(5).X_WS, pattern, 30.0, scene, {image.ranges, image.hits, image.quality});
+    EXPECT_EQ(image, general);
+    const double depth_max = 30.0 * std::ranges::min(beams, {}, &glm::dvec3::x).x * (1.0 - 1e-12);
+    ScanOutput depths{image.ranges, image.hits, image.quality};
+    depths.depth_max = depth_max;
+    Rasterizer().scan(Posed(5).X_WS, pattern, 30.0, scene, depths);
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      const double depth = general.ranges[i] * beams[i].x;
+      EXPECT_EQ(image.ranges[i], std::min(depth, depth_max));
+      EXPECT_EQ(image.hits[i], depth < depth_max ? general.hits[i] : kNoFace);
+    }
+  }
 }
 
 }  // namespace
