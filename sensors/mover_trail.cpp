@@ -8,6 +8,20 @@
 
 namespace sf::sensors {
 
+namespace {
+
+/// Returns the state at `time`, between two ticks with a relocation. It took place at the first of them, and the mover
+/// has driven with the velocity of the second since; before, it stood still.
+base::Report relocated(const base::Report& from, const base::Report& to, std::int64_t time) {
+  base::Report state = to;
+  state.time = time;
+  const double before = 1e-9 * static_cast<double>(to.time - std::max(time, from.time));
+  state.X_WM = robots::advance(to.X_WM, to.velocity, -before);
+  return state;
+}
+
+}  // namespace
+
 void MoverTrail::add(const base::Report& state) {
   if (base::is_absent(state.X_WM)) return clear();
   if (!states_.empty() && state.time <= states_.back().time) return;
@@ -17,21 +31,20 @@ void MoverTrail::add(const base::Report& state) {
   if (first - states_.begin() > 1) states_.erase(states_.begin(), first - 1);
 }
 
+bool MoverTrail::drove(const base::Report& from, const base::Report& to) const {
+  return base::is_drivable(from.X_WM, to.X_WM, max_speed_, 1e-9 * static_cast<double>(to.time - from.time));
+}
+
 base::Report MoverTrail::between(const base::Report& from, const base::Report& to, std::int64_t time) const {
-  const double seconds = 1e-9 * static_cast<double>(to.time - from.time);
-  if (time >= to.time || base::is_absent(to.X_WM) || !base::is_drivable(from.X_WM, to.X_WM, max_speed_, seconds))
-    return to;
-  return robots::interpolate(from, to, time);
+  if (time >= to.time || base::is_absent(to.X_WM)) return to;
+  return drove(from, to) ? robots::interpolate(from, to, time) : relocated(from, to, time);
 }
 
 base::Report MoverTrail::at(std::int64_t time, const base::Report& now) const {
   const base::Report* later = &now;
   for (auto state = states_.rbegin(); state != states_.rend(); ++state) {
     if (state->time >= later->time) continue;  // `now` is that tick
-    if (state->time <= time) return between(*state, *later, time);
-    // A relocation on the way ends the motion.
-    const double seconds = 1e-9 * static_cast<double>(later->time - state->time);
-    if (!base::is_drivable(state->X_WM, later->X_WM, max_speed_, seconds)) return *later;
+    if (state->time <= time || !drove(*state, *later)) return between(*state, *later, time);
     later = &*state;
   }
   return *later;
@@ -39,8 +52,19 @@ base::Report MoverTrail::at(std::int64_t time, const base::Report& now) const {
 
 double MoverTrail::reach(const base::Report& now) const {
   double most = 0.0;
-  for (const base::Report& state : states_)
-    most = std::max(most, base::hypot(state.X_WM.x - now.X_WM.x, state.X_WM.y - now.X_WM.y, state.X_WM.z - now.X_WM.z));
+  const auto include = [&](const base::Report& state) {
+    const base::Pose &X = state.X_WM, &Y = now.X_WM;
+    most = std::max(most, base::hypot(X.x - Y.x, X.y - Y.y, X.z - Y.z));
+  };
+  const base::Report* earlier = nullptr;
+  const auto add = [&](const base::Report& state) {
+    include(state);
+    if (earlier != nullptr && earlier->time < state.time && !drove(*earlier, state))
+      include(relocated(*earlier, state, earlier->time));
+    earlier = &state;
+  };
+  for (const base::Report& state : states_) add(state);
+  add(now);
   return most;
 }
 

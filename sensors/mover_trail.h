@@ -25,7 +25,7 @@ class MoverTrail {
   void add(const base::Report& state);
   void clear() { states_.clear(); }
   /// Returns the state at `time` [ns] on the arcs between the ticks, and from the last tick to `now`. Before the first
-  /// tick and before a relocation the mover stood still.
+  /// tick and before a relocation, which takes place at the beginning of its tick, the mover stood still.
   base::Report at(std::int64_t time, const base::Report& now) const;
   /// Returns the greatest distance [m] of the positions since the oldest tick from that of `now`.
   double reach(const base::Report& now) const;
@@ -41,6 +41,7 @@ class MoverTrail {
   void read(base::ByteReader& in);
 
  private:
+  bool drove(const base::Report& from, const base::Report& to) const;
   base::Report between(const base::Report& from, const base::Report& to, std::int64_t time) const;
 
   std::int64_t duration_;

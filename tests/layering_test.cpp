@@ -48,7 +48,7 @@ const std::map<std::string, Modules> kMayInclude{
     {"bridges", {"netio", "record", "scene", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"selftest", {"farm", "scene", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"vision", {"world", "base"}},
-    {"viz", {"farm", "record", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
+    {"viz", {"farm", "record", "sensors", "scene", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"cluster", {"base"}},
     {"scenarios",
      {"selftest", "cluster", "viz", "vision", "server", "bridges", "netio", "record", "farm", "control", "sensors",

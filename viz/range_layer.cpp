@@ -5,6 +5,7 @@
 
 #include "base/bearing.h"
 #include "base/echo.h"
+#include "base/rigid_transform.h"
 #include "viz/color.h"
 #include "viz/theme.h"
 #include "viz/view_sector.h"
@@ -22,13 +23,15 @@ void draw_scan(Axes& axes, const RangeReading& reading) {
   const record::SensorInfo& sensor = *reading.sensor;
   const base::RangeLimits limits{sensor.range_min, sensor.range_max};
   const auto samples = static_cast<std::uint32_t>(std::min<std::size_t>(sensor.samples, reading.values.size()));
+  const base::RigidTransform X_WS = base::transform_of(reading.X_WS, reading.tilt);
   std::vector<glm::dvec2> outline{axes.pixel({reading.X_WS.x, reading.X_WS.y})};
   std::vector<Line> echoes;
   for (std::uint32_t i = 0; i < samples; ++i) {
     const double range = reading.values[i], bearing = base::bearing_of(sensor.fov, samples, i);
     if (std::isnan(range)) continue;
-    const glm::dvec2 end =
-        axes.pixel(transform(reading.X_WS, base::rotate(bearing, {std::clamp(range, limits.min, limits.max), 0.0})));
+    const glm::dvec2 end_W{
+        transform(X_WS, std::clamp(range, limits.min, limits.max) * glm::dvec3(base::direction(bearing), 0.0))};
+    const glm::dvec2 end = axes.pixel(end_W);
     outline.push_back(end);
     if (base::echo_of(range, limits) == base::Echo::valid) echoes.push_back({end, end});
   }

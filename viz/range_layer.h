@@ -13,6 +13,7 @@ struct RangeReading {
   const record::SensorInfo* sensor = nullptr;  ///< must outlive this
   base::Pose X_WS;             ///< pose of the sensor at the measurement, so that echoes lie on surfaces
   std::vector<double> values;  ///< as in base::ReadingBlock
+  base::Tilt tilt{};           ///< of a scan; its beams are drawn as seen from above
 };
 
 /// True if readings of this sensor are scans or ranges of cones.

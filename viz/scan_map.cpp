@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "base/echo.h"
+#include "base/elementary.h"
+#include "base/tilted_pose.h"
 
 namespace sf::viz {
 
@@ -29,20 +31,40 @@ maps::GridGeometry grid_over(const world::Extent& extent) {
 
 ScanMap::ScanMap(const maps::GridGeometry& geometry) : odds_(geometry, kRule) {}
 
+/// Replaces beams and ranges by their projections on the ground, in axes parallel to the world's. Beams that are too
+/// short, or look straight up or down, leave no mark.
+base::Pose ScanMap::project(const sensors::SensorSpec& laser, const base::ReadingBlock& scan,
+                            std::span<const glm::dvec2> beams) {
+  const auto X_WS = compose(base::transform_of(scan.X_WM, scan.tilt), base::transform_of(laser.X_MS));
+  projected_.assign(beams.begin(), beams.end());
+  for (std::size_t k = 0; k < ranges_.size(); ++k) {
+    const glm::dvec2 d{X_WS.R * glm::dvec3(beams[k], 0.0)};
+    const double length = base::hypot(d.x, d.y);
+    const bool drawn = length > 1e-6 && (laser.range_min == 0.0 || ranges_[k] > laser.range_min);
+    ranges_[k] = drawn ? length * ranges_[k] : NAN;
+    if (drawn) projected_[k] = d / length;
+  }
+  return {X_WS.p.x, X_WS.p.y, X_WS.p.z, 0.0};
+}
+
 void ScanMap::add(const world::World& world, const sensors::SensorSpec& laser, const base::ReadingBlock& scan) {
   const double behind = 0.5 * odds_.geometry.cell;
-  const double range_min = laser.range_min > 0.0 ? laser.range_min + behind : 0.0;
+  double range_min = laser.range_min > 0.0 ? laser.range_min + behind : 0.0;
   const double range_max = std::min(laser.limit, maps::kMaxRangeCells * odds_.geometry.cell);
   ranges_.assign(scan.values.begin(), scan.values.end());
   base::mark_too_near(scan.quality, ranges_);
-  for (double& range : ranges_) range += behind;
   ends_.resize(ranges_.size());
-  std::vector<glm::dvec2>& beams = beams_[{laser.fov, laser.elements}];
-  if (beams.empty()) beams = maps::beam_directions(laser.fov, laser.elements);
-  const auto traced = maps::trace_scan(odds_.geometry, {scan.X_WS, ranges_, beams, range_min, range_max}, ends_);
+  std::vector<glm::dvec2>& level = beams_[{laser.fov, laser.elements}];
+  if (level.empty()) level = maps::beam_directions(laser.fov, laser.elements);
+  const bool is_tilted = !base::is_level(scan.tilt);
+  const base::Pose X_WS = is_tilted ? project(laser, scan, level) : scan.X_WS;
+  if (is_tilted) range_min = 0.0;
+  for (double& range : ranges_) range += behind;
+  const std::vector<glm::dvec2>& beams = is_tilted ? projected_ : level;
+  const auto traced = maps::trace_scan(odds_.geometry, {X_WS, ranges_, beams, range_min, range_max}, ends_);
   for (std::size_t k = 0; k < scan.hits.size(); ++k) {
-    const bool moves = scan.hits[k] < world.models.size() && world.models[scan.hits[k]].mover != world::kNone;
-    if (moves) ends_[k] = maps::without_hit(ends_[k]);
+    const bool stays = scan.hits[k] < world.models.size() && world.models[scan.hits[k]].mover == world::kNone;
+    if (!stays) ends_[k] = maps::without_hit(ends_[k]);
   }
   maps::add_traced_scan(odds_, traced, ends_);
 }

@@ -6,6 +6,7 @@
 // removed disappears.
 
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -25,7 +26,8 @@ class ScanMap {
  public:
   explicit ScanMap(const maps::GridGeometry& geometry);
 
-  /// Adds a noise-free scan of `laser`, which is in this world. A beam that ends on a mover frees its cells. A range
+  /// Adds a noise-free scan of `laser`, which is in this world, seen from above. A beam that ends on a mover, the floor
+  /// or terrain frees its cells. A range
   /// beyond maps::kMaxRangeCells cells has no echo. An echo counts half a cell behind its range: the wall then gets a
   /// cell that is mostly solid, regardless of rounding, and lines of cells, which deviate up to half a cell from their
   /// beams, free no cell behind it.
@@ -33,8 +35,12 @@ class ScanMap {
   maps::OccupancyGrid states() const { return maps::to_occupancy(odds_); }
 
  private:
+  base::Pose project(const sensors::SensorSpec& laser, const base::ReadingBlock& scan,
+                     std::span<const glm::dvec2> beams);
+
   maps::LogOddsGrid odds_;
   std::map<std::pair<double, std::uint32_t>, std::vector<glm::dvec2>> beams_;  ///< by field of view and samples
+  std::vector<glm::dvec2> projected_;                                          ///< beams of a tilted scan
   std::vector<double> ranges_;
   std::vector<std::uint32_t> ends_;
 };

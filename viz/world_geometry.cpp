@@ -1,11 +1,14 @@
 #include "viz/world_geometry.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
 
 #include "base/bearing.h"
+#include "base/rigid_transform.h"
+#include "scene/solids.h"
 #include "viz/signal_layer.h"
 #include "world/copies.h"
 #include "world/meshes/mesh_file.h"
@@ -19,10 +22,11 @@ namespace {
 constexpr double kPathStep = 0.05;  // [m]
 constexpr double kAbove = 1e-3;     // [m] from a surface to the mark on it
 
-std::int64_t add_point(PolyData& data, glm::dvec2 p, double z) {
-  data.points.push_back({p.x, p.y, z});
+std::int64_t add_point(PolyData& data, const glm::dvec3& p) {
+  data.points.push_back(p);
   return static_cast<std::int64_t>(data.points.size()) - 1;
 }
+std::int64_t add_point(PolyData& data, glm::dvec2 p, double z) { return add_point(data, glm::dvec3(p, z)); }
 
 /// Appends to the array with that name, which is created with its first value.
 void append(std::vector<DataArray>& arrays, const char* name, std::initializer_list<double> values) {
@@ -36,9 +40,15 @@ void append_color(std::vector<DataArray>& arrays, std::uint32_t color) {
   append(arrays, "rgb", {part(16), part(8), part(0)});
 }
 
-void add_upright(PolyData& data, glm::dvec2 a, glm::dvec2 b, double z_min, double z_max) {
-  data.polygons.push_back(
-      {add_point(data, a, z_min), add_point(data, b, z_min), add_point(data, b, z_max), add_point(data, a, z_max)});
+/// Appends a polygon. @param X_WF its frame in the world
+void add_polygon(PolyData& data, std::span<const glm::dvec3> corners_F, const base::RigidTransform& X_WF = {}) {
+  std::vector<std::int64_t>& polygon = data.polygons.emplace_back();
+  for (const glm::dvec3& p : corners_F) polygon.push_back(add_point(data, transform(X_WF, p)));
+}
+
+void add_upright(PolyData& data, glm::dvec2 a, glm::dvec2 b, double z_min, double z_max,
+                 const base::RigidTransform& X_WF = {}) {
+  add_polygon(data, std::array<glm::dvec3, 4>{{{a, z_min}, {b, z_min}, {b, z_max}, {a, z_max}}}, X_WF);
 }
 
 constexpr std::uint32_t kTerrainColor = 0xFFA3AD94u;
@@ -98,20 +108,17 @@ class DrawnMeshes {
   }
   /// Calls `add_cell(model)` for each triangle of the models of a mover that it has appended.
   template <class AddCell>
-  void add(PolyData& data, std::uint32_t mover, const base::Pose& X_WM, const AddCell& add_cell) const {
+  void add(PolyData& data, std::uint32_t mover, const base::RigidTransform& X_WM, const AddCell& add_cell) const {
     const world::CopyIndex copies(world_);
     for (const world::MeshModel& row : world_.mesh_models) {
       const std::uint32_t carrier = world_.models[row.model].mover;
       if (carrier != (mover == world::kNone ? mover : copies.row_of(mover)) || !has(row.model, mover)) continue;
       const world::Mesh& mesh = world_.meshes[row.mesh];
       const auto first = static_cast<std::int64_t>(data.points.size());
-      const base::Pose X = compose(X_WM, row.X_BF);
+      const base::RigidTransform X = compose(X_WM, base::transform_of(row.X_BF));
       const bool is_own = mover != world::kNone && world_.movers[mover].model == row.model;
       const world::Stretch stretch = is_own ? *world::stretch_of(world_, mover) : world::Stretch{};
-      for (const glm::dvec3& vertex : mesh.vertices) {
-        const glm::dvec3 p = stretch(vertex);
-        add_point(data, transform(X, glm::dvec2{p.x, p.y}), X.z + p.z);
-      }
+      for (const glm::dvec3& p : mesh.vertices) add_point(data, transform(X, stretch(p)));
       for (std::size_t i = 0; i + 2 < mesh.corners.size(); i += 3) {
         data.polygons.push_back({first + mesh.corners[i], first + mesh.corners[i + 1], first + mesh.corners[i + 2]});
         add_cell(row.model, mesh);
@@ -124,27 +131,32 @@ class DrawnMeshes {
   std::vector<std::uint8_t> has_;  ///< per model
 };
 
-/// The top face of a part of a body.
-struct Lid {
-  std::vector<glm::dvec2> outline;  ///< [m] mover's frame
-  double z = 0.0;                   ///< [m] above the mover's origin
+/// A convex piece of the top or the bottom of a closed outline.
+struct Flat {
+  std::vector<glm::dvec3> corners;
+  double height = 0.0;  ///< [m] of the outline's sides
   std::uint32_t model = 0;
 };
 
-/// Returns one lid per closed outline of a mover's models.
-std::vector<Lid> lids_of(const world::Mover& mover) {
-  std::map<std::uint32_t, std::vector<Line>> edges;
-  std::map<std::uint32_t, double> tops;
-  for (const world::Segment& side : mover.body) {
-    if (!side.solid_left) continue;
-    edges[side.model].push_back({side.a, side.b});
-    tops[side.model] = side.z_max;
+/// @param on_floor leaves out bottoms at z = 0
+std::vector<Flat> flats_of(std::span<const world::Segment> segments, bool on_floor) {
+  std::map<std::pair<double, double>, std::vector<world::Segment>> outlines;
+  for (world::Segment side : segments) {
+    side.seen_by_laser = true;  // others are drawn, too
+    outlines[{side.z_min, side.z_max}].push_back(side);
   }
-  std::vector<Lid> lids;
-  for (const auto& [model, lines] : edges)
-    for (std::vector<glm::dvec2>& outline : join_edges(lines))
-      if (outline.size() > 2) lids.push_back({std::move(outline), tops[model], model});
-  return lids;
+  std::vector<Flat> flats;
+  for (const auto& [heights, sides] : outlines) {
+    const scene::Mesh mesh = scene::mesh_of(sides, on_floor);
+    for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+      Flat flat{{}, heights.second - heights.first, mesh.owners[i]};
+      for (std::uint32_t k = 0; k < scene::corners_of(mesh.faces[i]); ++k)
+        flat.corners.push_back(mesh.vertices[mesh.faces[i][k]]);
+      const auto [low, high] = std::ranges::minmax(flat.corners, {}, &glm::dvec3::z);
+      if (low.z == high.z) flats.push_back(std::move(flat));
+    }
+  }
+  return flats;
 }
 
 void add_line(PolyData& data, const std::vector<glm::dvec2>& points, double width, std::uint32_t color, double kind) {
@@ -201,18 +213,28 @@ PolyData walls_geometry(const world::World& world) {
     append_color(data.cell_data, color_of(world, model));
     data.names.push_back(model_name(world, model));
   };
-  std::vector<std::uint8_t> stops(world.models.size(), 0);
+  std::map<std::uint32_t, const world::Segment*> wall_of;  // one per model
+  std::vector<world::Segment> drawn;
   for (const world::Segment& wall : world.walls) {
-    if (wall.stops_robots && wall.model < stops.size()) stops[wall.model] = 1;
-    if (meshes.has(wall.model, world::kNone)) continue;
+    const world::Segment*& one = wall_of[wall.model];
+    if (one == nullptr || wall.stops_robots) one = &wall;
+    if (!meshes.has(wall.model, world::kNone)) drawn.push_back(wall);
+  }
+  for (const world::Segment& wall : drawn) {
     add_upright(data, wall.a, wall.b, wall.z_min, wall.z_max);
     add_cell(wall.model, wall.z_max - wall.z_min, wall.seen_by_laser, wall.stops_robots);
+  }
+  for (const Flat& flat : flats_of(drawn, true)) {
+    const world::Segment& wall = *wall_of.at(flat.model);
+    add_polygon(data, flat.corners);
+    add_cell(flat.model, flat.height, wall.seen_by_laser, wall.stops_robots);
   }
   const world::Mesh* last = nullptr;
   double height = 0.0;
   meshes.add(data, world::kNone, {}, [&](std::uint32_t model, const world::Mesh& mesh) {
     if (&mesh != last) last = &mesh, height = world::box_of(mesh.vertices).size().z;
-    add_cell(model, height, true, stops[model] != 0);
+    const auto wall = wall_of.find(model);
+    add_cell(model, height, true, wall != wall_of.end() && wall->second->stops_robots);
   });
   for (const world::Terrain& terrain : world.terrain) {
     const auto [low, high] = std::ranges::minmax(terrain.heights);
@@ -245,30 +267,28 @@ PolyData roads_geometry(const world::World& world) {
   return data;
 }
 
-PolyData bodies_geometry(const world::World& world, std::span<const base::Pose> poses) {
+PolyData bodies_geometry(const world::World& world, std::span<const base::TiltedPose> poses) {
   PolyData data;
   const DrawnMeshes meshes(world);
   for (std::uint32_t m = 0; m < std::min(poses.size(), world.movers.size()); ++m) {
-    if (base::is_absent(poses[m])) continue;
+    if (base::is_absent(poses[m].X)) continue;
+    const base::RigidTransform X_WM = base::transform_of(poses[m].X, poses[m].tilt);
     const auto add_cell = [&](std::uint32_t model) {
       append(data.cell_data, "robot", {static_cast<double>(m)});
       append_color(data.cell_data, color_of(world, model));
       data.names.push_back(world.movers[m].name);
     };
-    for (const Lid& lid : lids_of(world.movers[m])) {
-      if (meshes.has(lid.model, m)) continue;
-      std::vector<std::int64_t>& polygon = data.polygons.emplace_back();
-      for (const glm::dvec2& p : lid.outline)
-        polygon.push_back(add_point(data, transform(poses[m], p), poses[m].z + lid.z));
-      add_cell(lid.model);
+    for (const Flat& flat : flats_of(world.movers[m].body, false)) {
+      if (meshes.has(flat.model, m)) continue;
+      add_polygon(data, flat.corners, X_WM);
+      add_cell(flat.model);
     }
     for (const world::Segment& side : world.movers[m].body) {
       if (meshes.has(side.model, m)) continue;
-      add_upright(data, transform(poses[m], side.a), transform(poses[m], side.b), poses[m].z + side.z_min,
-                  poses[m].z + side.z_max);
+      add_upright(data, side.a, side.b, side.z_min, side.z_max, X_WM);
       add_cell(side.model);
     }
-    meshes.add(data, m, poses[m], [&](std::uint32_t model, const world::Mesh&) { add_cell(model); });
+    meshes.add(data, m, X_WM, [&](std::uint32_t model, const world::Mesh&) { add_cell(model); });
   }
   return data;
 }
@@ -325,13 +345,13 @@ PolyData trajectories_geometry(const world::World& world, std::span<const std::v
 }
 
 void ScanGeometry::add(const sensors::SensorSpec& laser, const base::ReadingBlock& scan) {
-  const base::Pose& X_WS = scan.X_WS;
+  const auto X_WS = compose(base::transform_of(scan.X_WM, scan.tilt), base::transform_of(laser.X_MS));
   for (std::size_t i = 0; i < scan.values.size(); ++i) {
     const double bearing = bearing_of(laser, static_cast<std::uint32_t>(i));
-    const glm::dvec2 end = transform(X_WS, base::rotate(bearing, {scan.values[i], 0.0}));
+    const glm::dvec3 end = transform(X_WS, scan.values[i] * glm::dvec3(base::direction(bearing), 0.0));
     const bool hit = i < scan.hits.size() && scan.hits[i] != base::kNoHit;
     const bool bounded = i >= scan.quality.size() || scan.quality[i] == base::QualityFlag::none;
-    const auto add_sample = [&](glm::dvec2 p) {
+    const auto add_sample = [&](const glm::dvec3& p) {
       append(data_.point_data, "range", {scan.values[i]});
       append(data_.point_data, "bearing", {bearing});
       append(data_.point_data, "hit", {hit ? static_cast<double>(scan.hits[i]) : -1.0});
@@ -339,10 +359,10 @@ void ScanGeometry::add(const sensors::SensorSpec& laser, const base::ReadingBloc
       append(data_.point_data, "robot", {static_cast<double>(scan.mover)});
       append(data_.point_data, "sensor", {static_cast<double>(scan.sensor)});
       append(data_.point_data, "time", {1e-9 * static_cast<double>(scan.time)});
-      return add_point(data_, p, X_WS.z);
+      return add_point(data_, p);
     };
     if (beams_)
-      data_.lines.push_back({add_sample({X_WS.x, X_WS.y}), add_sample(end)});
+      data_.lines.push_back({add_sample(X_WS.p), add_sample(end)});
     else
       data_.dots.push_back({add_sample(end)});
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/reading.h"
+#include "base/tilted_pose.h"
 #include "sensors/magnetic_field/records.h"
 #include "sensors/sensor_type.h"
 #include "viz/tracks.h"
@@ -17,18 +18,20 @@ namespace sf::viz {
 inline constexpr std::size_t kMostDrawnTriangles = 2'000'000;
 inline constexpr std::size_t kMostTerrainTriangles = 500'000;  ///< terrain is drawn in larger cells beyond this number
 
-/// Returns one upright rectangle per wall segment, or the triangles of a model that has a mesh. Cell arrays: `model`
-/// (row of the world's models), `height` [m], `rgb` [0, 255]; `laser` and `robots` are 1 if lasers see the wall or
-/// robots stop at it; `name` of the model. `model` of terrain is -1.
+/// Returns one upright rectangle per wall segment, and the tops and bottoms of closed outlines in convex pieces
+/// (bottoms above the floor only), or the triangles of a model that has a mesh. Cell arrays: `model` (row of the
+/// world's models), `height` [m], `rgb` [0, 255]; `laser` and `robots` are 1 if lasers see the wall or robots stop at
+/// it; `name` of the model. `model` of terrain is -1.
 PolyData walls_geometry(const world::World& world);
 
 /// Returns lane markings and paths as lines on the ground. Cell arrays: `width` [m], `rgb` [0, 255], `kind`: 0 marking,
 /// 1 path.
 PolyData roads_geometry(const world::World& world);
 
-/// Returns the sides and tops of the bodies of movers, or the triangles of models that have a mesh, at `poses`, one per
-/// mover of the world; absent movers are omitted. Cell arrays: `robot` (row of the world's movers), `rgb`; `name`.
-PolyData bodies_geometry(const world::World& world, std::span<const base::Pose> poses);
+/// Returns the tops, bottoms and sides of the bodies of movers, or the triangles of models that have a mesh, at
+/// `poses`, one per mover of the world; absent movers are omitted. Cell arrays: `robot` (row of the world's movers),
+/// `rgb`; `name`.
+PolyData bodies_geometry(const world::World& world, std::span<const base::TiltedPose> poses);
 
 /// Returns the states of traffic lights, one per light of the world: on top of each head an indicator, and on its front
 /// a lamp, at the height of its colour if the head has three. They are half as large while a light flashes. Cell
@@ -46,9 +49,9 @@ struct MotionSample {
 /// `contact`; cell array: `robot`; `name`.
 PolyData trajectories_geometry(const world::World& world, std::span<const std::vector<MotionSample>> motions);
 
-/// Collects scans as dots at the ends of their beams, or as the beams. Point arrays: `range` [m], `bearing` [rad],
-/// `hit` (row of the model that was hit; -1: none in range), `bound` [m] (largest error; infinite: not stated),
-/// `robot`, `sensor`, `time` [s].
+/// Collects scans, tilted with their robots, as dots at the ends of their beams, or as the beams. Point arrays: `range`
+/// [m], `bearing` [rad], `hit` (row of the model that was hit; -1: none in range), `bound` [m] (largest error;
+/// infinite: not stated), `robot`, `sensor`, `time` [s].
 class ScanGeometry {
  public:
   explicit ScanGeometry(bool beams) : beams_(beams) {}

@@ -30,17 +30,13 @@ class MissingScans {
 
   void add_to(base::TickRecord& tick, std::size_t number) {
     if (!std::binary_search(ticks_.begin(), ticks_.end(), number)) return;
-    const std::span<const base::ReadingBlock> scans = replay_.scans_at(number);
-    scans_.assign(scans.begin(), scans.end());
-    for (base::ReadingBlock& scan : scans_) scan.time = tick.time;
-    tick.readings = scans_;
+    tick.readings = replay_.scans_at(number);
   }
 
  private:
   gpu::Device device_;
   ScanReplay replay_;
   std::vector<std::size_t> ticks_;
-  std::vector<base::ReadingBlock> scans_;
 };
 
 }  // namespace

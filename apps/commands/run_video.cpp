@@ -16,6 +16,7 @@
 #include "base/echo.h"
 #include "base/elementary.h"
 #include "base/error.h"
+#include "base/tilted_pose.h"
 #include "base/time.h"
 #include "robots/kinematics.h"
 #include "scenarios/experiment.h"
@@ -175,6 +176,11 @@ class RunVideo::Work {
     const auto found = shown_.find({reading.mover, reading.type, reading.sensor});
     if (found == shown_.end()) return;
     viz::RangeReading kept{found->second.sensor, reading.X_WS, {reading.values.begin(), reading.values.end()}};
+    if (!base::is_level(reading.tilt) && kept.sensor->standard.empty()) {
+      const auto X_WS = compose(base::transform_of(reading.X_WM, reading.tilt), base::transform_of(kept.sensor->X_MS));
+      const base::TiltedPose pose = base::tilted_pose_of(X_WS);
+      kept.X_WS = pose.X, kept.tilt = pose.tilt;
+    }
     base::mark_too_near(reading.quality, kept.values);
     found->second.arrived.emplace_back(reading.time, std::move(kept));
   }

@@ -35,7 +35,7 @@ std::vector<std::uint8_t> chosen_of(const record::Recording& recording, const st
 }  // namespace
 
 RecordingPart open_part(const std::string& directory, const PartOption& wanted) {
-  RecordingPart part{scenarios::open_run(directory), {}, 0.0};
+  RecordingPart part{scenarios::open_run(directory), {}, 0.0, {}};
   record::Recording& recording = part.recording;
   print_damage(recording);
   part.chosen = chosen_of(recording, wanted.robots);
@@ -45,6 +45,9 @@ RecordingPart open_part(const std::string& directory, const PartOption& wanted) 
   };
   std::int64_t first = INT64_MAX, last = INT64_MIN;
   for (auto& states : recording.states) {
+    const auto begin = std::ranges::find_if_not(
+        states, [&](const auto& sample) { return 1e-9 * static_cast<double>(sample.time) < wanted.from - 1e-9; });
+    part.before.emplace_back(states.begin(), begin);
     std::erase_if(states, outside);
     if (states.empty()) continue;
     first = std::min(first, states.front().time);

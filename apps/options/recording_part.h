@@ -13,6 +13,8 @@ struct RecordingPart {
   record::Recording recording;       ///< states and lights of the time span; readings of the chosen movers in it
   std::vector<std::uint8_t> chosen;  ///< one per mover: 1 if the mover is chosen
   double seconds = 0.0;              ///< from the first tick to the last
+  /// Per mover: states before the time span, by time.
+  std::vector<std::vector<record::StateSample>> before;
 };
 
 /// Opens a recording and prints its damage.

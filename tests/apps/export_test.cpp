@@ -440,6 +440,41 @@ TEST(ExportClouds, ParaViewGetsTheNewestScans) {
   expect_in("no clouds of lidars: the run was recorded without --record-readings", none.err);
 }
 
+/// Scans of a tilted robot, and of a rolling laser on the way, are replayed as they were recorded, from the middle of a
+/// run, too.
+TEST(Export, ReplayedScansAreTheRecordedOnes) {
+  const Folder folder;
+  folder.write(
+      "w.world",
+      "interval_sim 100\ndefine rover position( size [0.6 0.4 0.3] velocity_bounds [-5 5 -5 5 0 0 -200 200] )\n"
+      "model( size [0.2 30 3] pose [9 0 0 0] )\nmodel( size [0.2 30 3] pose [-9 0 0 0] )\n"
+      "rover( name \"r1\" laser( samples 31 fov 360 range_max 12 ) )\n"
+      "rover( name \"r2\" pose [0 5 0 60] laser( samples 31 fov 300 range_max 12 latency 0.15 rolling 1 ) )\n");
+  const std::string scenario =
+      folder.write("s.toml",
+                   "world = \"w.world\"\nduration = 1\n[default]\ncontroller = \"wander\"\n[[robot]]\nname = \"r1\"\n"
+                   "controller = \"none\"\npose = [0, 0, 1.5, 20, -30, 63]\n");
+  run_successfully({"run", scenario, "--record", folder.path("r"), "--record-readings"});
+  run_successfully({"export", folder.path("r"), "-o", folder.path("c")});
+  const Rows table = rows_of(folder.path("c/laser.csv"));
+  for (const std::string robot : {"r1", "r2"}) {
+    const std::string out = folder.path(robot);
+    run_successfully(
+        {"export", folder.path("r"), "--vtk", "--robots", robot, "--from", "0.5", "--every", "0.1", "-o", out});
+    for (int tick = 0; tick < 4; ++tick) {
+      const std::string scan = fmt::format("{}/scans/scans_{:06}.vtp", out, tick);
+      double low = INFINITY, high = 0.0;
+      for (const auto& row : table) {
+        if (row[2] != robot || std::abs(std::stod(row[0]) - 0.1 * (tick + 5)) > 1e-6) continue;
+        low = std::min(low, std::stod(row[7])), high = std::max(high, std::stod(row[7]));
+      }
+      EXPECT_NEAR(std::stod(vtk_head(scan, "\"range\"", "RangeMin")), low, 1e-5) << robot << tick;
+      EXPECT_NEAR(std::stod(vtk_head(scan, "\"range\"", "RangeMax")), high, 1e-5) << robot << tick;
+      EXPECT_NEAR(std::stod(vtk_head(scan, "\"time\"", "RangeMin")), 0.1 * (tick + 5), 1e-9);
+    }
+  }
+}
+
 /// Tags are not robots. A field needs no laser, and is at the requested height.
 TEST(Export, TagsHaveNoTrajectoriesAndMagnetsHaveAField) {
   const Folder folder;

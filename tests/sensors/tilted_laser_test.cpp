@@ -9,6 +9,7 @@
 #include "scene/rasterizer.h"
 #include "sensors/laser.h"
 #include "sensors/lidar.h"
+#include "sensors/mover_trail.h"
 #include "tests/refusal.h"
 #include "tests/sensors/series.h"
 
@@ -169,6 +170,32 @@ TEST(RollingLaser, ImpossibleSettingsAreRefused) {
   expect_in("trial.world:2: 'scan_time' is that of a rolling scan", refused("scan_time 0.1"));
   expect_in("'scan_time'", refused("rolling 1 scan_time 0"));
   expect_in("a rolling scan of 20000 beams; expected at most 10000", refused("rolling 1 samples 20000"));
+}
+
+/// A mover that is put to x = 5 and then drives 0.12 m in the tick of 50 ms: before the put it stood at 5 m.
+TEST(MoverTrail, DrivesFromWhereItWasPut) {
+  constexpr std::int64_t kMs = 1'000'000;
+  sensors::MoverTrail trail(1000 * kMs, 5.0);
+  trail.add({0, 300 * kMs, {0.50, 0.0, 0.0, 0.0}, {1.0}});
+  trail.add({0, 350 * kMs, {0.55, 0.0, 0.0, 0.0}, {1.0}});
+  const base::Report now{0, 400 * kMs, {5.12, 0.0, 0.0, 0.0}, {2.4}};
+  const auto x = [&](std::int64_t ms, const base::Report& last) { return trail.at(ms * kMs, last).X_WM.x; };
+  const double before = x(310, now), at_put = x(350, now), after = x(360, now), late = x(380, now), end = x(400, now);
+  EXPECT_NEAR(before, 5.0, 1e-12);
+  EXPECT_NEAR(at_put, 5.0, 1e-12);
+  EXPECT_NEAR(after, 5.024, 1e-12);
+  EXPECT_NEAR(late, 5.072, 1e-12);
+  EXPECT_EQ(end, 5.12);
+  // The same with ticks after the put.
+  trail.add(now);
+  const base::Report next{0, 450 * kMs, {5.24, 0.0, 0.0, 0.0}, {2.4}};
+  EXPECT_NEAR(x(310, next), 5.0, 1e-12);
+  EXPECT_NEAR(x(380, next), 5.072, 1e-12);
+  EXPECT_NEAR(x(425, next), 5.18, 1e-12);
+  // 4 m back to 5.12: the reach includes the pose of the put, which no tick has.
+  sensors::MoverTrail turned(1000 * kMs, 5.0);
+  turned.add({0, 0, {8.0, 0.0, 0.0, 0.0}, {}});
+  EXPECT_NEAR(turned.reach({0, 50 * kMs, {5.12, 0.0, 0.0, 0.0}, {-80.0}}), 4.0, 1e-12);
 }
 
 }  // namespace

@@ -73,6 +73,24 @@ TEST(ScanMap, MoversLeaveNoMark) {
   EXPECT_EQ(map.states().at({4, 2}), Cell::free);
 }
 
+/// Nose down by 60 degrees, a beam of 6 m ends 3 m ahead. What it meets on the floor is free.
+TEST(ScanMap, TiltedScansAreSeenFromAbove) {
+  const world::World world = one_beam();
+  for (const std::uint32_t met : {0u, base::kFloorHit}) {
+    ScanMap map(kPlan);
+    base::ReadingBlock scan;
+    const double range = 6.4;
+    scan.X_WM = {0.5, 5.5, 0.0, 0.0};
+    scan.tilt.pitch = M_PI / 3;
+    scan.values = {&range, 1};
+    scan.hits = {&met, 1};
+    map.add(world, sensors::laser_type.parse(world).rows.at(0), scan);
+    EXPECT_EQ(map.states().at({3, 2}), Cell::free);
+    EXPECT_EQ(map.states().at({4, 2}), met == 0 ? Cell::occupied : Cell::free);
+    EXPECT_EQ(map.states().at({5, 2}), Cell::unexplored);
+  }
+}
+
 TEST(ScanMap, RangesUpToTheSmallestAreSkipped) {
   world::World world = one_beam();
   scenes::edit_laser(world.movers[0])->range_min = 0.1;

@@ -48,6 +48,7 @@ TEST(VtkFiles, WallsAreUprightRectangles) {
   world.walls[1].seen_by_laser = false;
   world.walls[2].stops_robots = false;
   world.walls[3].z_min = 0.25;
+  for (world::Segment& wall : world.walls) wall.solid_left = false;
   write_poly_data(walls_geometry(world), scenes::own_file("walls.vtp"));
   const auto reader = read_poly_data(scenes::own_file("walls.vtp"));
   vtkPolyData* walls = reader->GetOutput();
@@ -108,7 +109,7 @@ TEST(VtkFiles, ScanDotsAreAtBeamEnds) {
   const std::uint32_t hits[] = {0, 7, base::kNoHit};
   const base::QualityFlag quality[] = {base::QualityFlag::none, base::QualityFlag::grazing, base::QualityFlag::none};
   base::ReadingBlock scan;
-  scan.X_WS = {1.0, 1.0, 0.2, M_PI / 2};
+  scan.X_WM = {1.0, 1.0, 0.2, M_PI / 2};
   scan.values = ranges;
   scan.hits = hits;
   scan.quality = quality;
@@ -126,7 +127,7 @@ TEST(VtkFiles, ScanDotsAreAtBeamEnds) {
   ASSERT_EQ(data->GetNumberOfPoints(), 3);
   EXPECT_NEAR(data->GetPoint(1)[0], 1.0, 1e-12);
   EXPECT_NEAR(data->GetPoint(1)[1], 3.0, 1e-12);
-  EXPECT_EQ(data->GetPoint(1)[2], 0.2);
+  EXPECT_EQ(data->GetPoint(1)[2], 0.2 + laser.X_MS.z);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(number(data->GetPointData(), "range", i), ranges[i]);
   EXPECT_EQ(number(data->GetPointData(), "hit", 1), 7.0);
   EXPECT_EQ(number(data->GetPointData(), "hit", 2), -1.0) << "no echo";
@@ -137,6 +138,12 @@ TEST(VtkFiles, ScanDotsAreAtBeamEnds) {
   const auto other = read_poly_data(scenes::own_file("beams.vtp"));
   EXPECT_EQ(other->GetOutput()->GetNumberOfLines(), 3);
   EXPECT_EQ(other->GetOutput()->GetNumberOfPoints(), 6);
+  // Nose down by 30 degrees, the middle beam of 2 m ends 1 m below the sensor.
+  scan.tilt.pitch = M_PI / 6;
+  ScanGeometry tilted(true);
+  tilted.add(spec, scan);
+  const glm::dvec3 way = tilted.data().points[3] - tilted.data().points[2];
+  EXPECT_LT(glm::length(way - glm::dvec3(0.0, 2.0 * std::cos(M_PI / 6), -1.0)), 1e-12);
 }
 
 /// A light of three lamps that faces along y, and one of a single lamp.
@@ -166,13 +173,62 @@ TEST(VtkFiles, LightsShowTheirStates) {
   EXPECT_EQ(green_one.polygons.size(), 2u);
 }
 
+/// Area [m^2] of the flat polygons of `data` at a height.
+double area_at(const PolyData& data, double z) {
+  double area = 0.0;
+  for (const auto& polygon : data.polygons) {
+    const auto at = [&](std::size_t k) { return data.points[static_cast<std::size_t>(polygon[k % polygon.size()])]; };
+    double twice = 0.0;
+    for (std::size_t k = 0; k < polygon.size(); ++k) twice += base::cross(glm::dvec2(at(k)), glm::dvec2(at(k + 1)));
+    bool flat = true;
+    for (std::size_t k = 0; k < polygon.size(); ++k) flat = flat && std::abs(at(k).z - z) < 1e-12;
+    area += flat ? 0.5 * std::abs(twice) : 0.0;
+  }
+  return area;
+}
+
+/// A box 2 by 2 m with a courtyard of 1 m: the top leaves the court open; its bottom is on the floor. Raised, it has
+/// a bottom.
+TEST(VtkFiles, BoxesHaveATop) {
+  for (const double z : {0.0, 0.5}) {
+    world::World world;
+    const std::uint32_t block = scenes::add_model(world, "block", 0xFF102030u);
+    scenes::add_box(world, 1.0, 2.0, 3.0, 4.0, block);
+    const glm::dvec2 court[] = {{1.5, 2.5}, {1.5, 3.5}, {2.5, 3.5}, {2.5, 2.5}};  // clockwise
+    for (int i = 0; i < 4; ++i) {
+      world.walls.push_back(world.walls[0]);
+      world.walls.back().a = court[i], world.walls.back().b = court[(i + 1) % 4];
+    }
+    for (world::Segment& wall : world.walls) wall.z_min = z;
+    const PolyData walls = walls_geometry(world);
+    EXPECT_NEAR(area_at(walls, 1.0), 3.0, 1e-12);
+    EXPECT_NEAR(area_at(walls, z), z > 0.0 ? 3.0 : 0.0, 1e-12);
+    EXPECT_EQ(walls.names.size(), walls.polygons.size());
+    EXPECT_EQ(walls.cell_data[1].values.back(), 1.0 - z) << "height";
+  }
+}
+
+/// Bodies roll and pitch about their origins.
+TEST(VtkFiles, BodiesTiltWithTheirRobots) {
+  world::World world;
+  world.movers.push_back(scenes::make_robot(world, 1, {}, 0xFF0000FFu, 5.0));
+  const base::TiltedPose level{{5.0, 6.0, 0.25, 0.4}, {}}, tilted{level.X, {0.35, -0.5}};
+  const PolyData a = bodies_geometry(world, {&level, 1}), b = bodies_geometry(world, {&tilted, 1});
+  const auto X_WM = base::transform_of(level.X), Y_WM = base::transform_of(tilted.X, tilted.tilt);
+  ASSERT_EQ(a.points.size(), b.points.size());
+  for (std::size_t i = 0; i < a.points.size(); ++i) {
+    const glm::dvec3 p_M = transpose(X_WM.R) * (a.points[i] - X_WM.p);
+    EXPECT_LT(glm::length(b.points[i] - base::transform(Y_WM, p_M)), 1e-12);
+  }
+}
+
 TEST(VtkFiles, AbsentRobotsHaveNoBody) {
   world::World world;
   for (std::uint32_t id : {1u, 2u}) world.movers.push_back(scenes::make_robot(world, id, {}, 0xFF0000FFu, 5.0));
-  const base::Pose gone{NAN, NAN, NAN, NAN};
-  EXPECT_TRUE(bodies_geometry(world, std::vector<base::Pose>{gone, gone}).polygons.empty());
-  const PolyData one = bodies_geometry(world, std::vector<base::Pose>{gone, {5.0, 6.0, 0.0, 0.0}});
-  EXPECT_EQ(one.polygons.size(), 17u) << "16 sides and the top";
+  const base::TiltedPose gone{base::kAbsent, {}};
+  EXPECT_TRUE(bodies_geometry(world, std::vector{gone, gone}).polygons.empty());
+  const PolyData one = bodies_geometry(world, std::vector<base::TiltedPose>{gone, {{5.0, 6.0, 0.0, 0.0}, {}}});
+  EXPECT_GT(one.polygons.size(), 16u) << "16 sides, the top and the bottom";
   for (const glm::dvec3& p : one.points) EXPECT_NEAR(std::hypot(p.x - 5.0, p.y - 6.0), 0.165, 1e-9);
   for (const double robot : one.cell_data[0].values) EXPECT_EQ(robot, 1.0);
 }
@@ -192,12 +248,12 @@ TEST(VtkFiles, MeshesAreDrawnInPlaceOfOutlines) {
   EXPECT_EQ(walls.names[0], "rock");
   EXPECT_EQ(walls.cell_data[1].values, std::vector{2.0}) << "height";
   EXPECT_EQ(walls.cell_data[3].values, std::vector{0.0}) << "robots drive through";
-  const std::vector<base::Pose> poses{{5.0, 6.0, 0.25, M_PI / 2}};
+  const std::vector<base::TiltedPose> poses{{{5.0, 6.0, 0.25, M_PI / 2}, {}}};
   const PolyData body = bodies_geometry(world, poses);
   ASSERT_EQ(body.polygons.size(), 1u);
   EXPECT_LT(glm::length(body.points[1] - glm::dvec3(5.0, 7.0, 0.25)), 1e-12);
   world.changed_shapes[0].shape = 0;
-  EXPECT_EQ(bodies_geometry(world, poses).polygons.size(), 17u) << "16 sides and the top";
+  EXPECT_GT(bodies_geometry(world, poses).polygons.size(), 16u) << "16 sides, the top and the bottom";
   world.meshes[0].corners.resize(3 * kMostDrawnTriangles);
   EXPECT_EQ(walls_geometry(world).polygons[0].size(), 4u) << "its wall";
 }
@@ -230,17 +286,11 @@ TEST(VtkFiles, OnlyClosedOutlinesHaveALid) {
   const std::uint32_t tower = scenes::add_model(world, "tower", 0xFFFF0000u);
   for (int i = 0; i < 4; ++i)
     world.movers[0].body.push_back({0.1 * p[i], 0.1 * p[(i + 1) % 4], 0.1, 0.4, tower, true, true, true});
-  const PolyData bodies = bodies_geometry(world, std::vector<base::Pose>{{5.0, 6.0, 0.25, 0.0}});
-  ASSERT_EQ(bodies.polygons.size(), 2u + 16u + 3u + 4u) << "lids, then sides";
-  const auto height = [&](std::size_t lid) {
-    std::set<double> heights;
-    for (const std::int64_t point : bodies.polygons[lid]) heights.insert(bodies.points[point].z);
-    return heights;
-  };
-  EXPECT_EQ(bodies.polygons[0].size(), 16u);
-  EXPECT_EQ(height(0), std::set<double>{0.25 + 0.1});
-  EXPECT_EQ(bodies.polygons[1].size(), 4u);
-  EXPECT_EQ(height(1), std::set<double>{0.25 + 0.4});
+  const PolyData bodies = bodies_geometry(world, std::vector<base::TiltedPose>{{{5.0, 6.0, 0.25, 0.0}, {}}});
+  const double round = area_at(bodies, 0.25 + 0.1), square = 0.01 * 0.1 * 0.2;
+  EXPECT_NEAR(round, 8.0 * 0.165 * 0.165 * std::sin(M_PI / 8), square + 1e-3) << "top; the tower's bottom is as high";
+  EXPECT_NEAR(area_at(bodies, 0.25 + 0.4), square, 1e-12) << "the tower";
+  EXPECT_EQ(area_at(bodies, 0.25 + 0.5), 0.0) << "the open bar";
 }
 
 TEST(VtkFiles, RoadsAreLinesOnTheGround) {
