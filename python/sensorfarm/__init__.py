@@ -40,8 +40,8 @@ def _valid(self, type, without_noise=False):
 def _images(self, kind="depth", type="camera"):
     """Returns the newest images of all cameras: of "depth" (cameras, height, width) [m], of "labels" (cameras, height,
     width), the hits, and of "normals" (cameras, height, width, 3) views without a copy; of "colour" a new array of bytes
-    (cameras, height, width, 3)."""
-    kinds = "depth", "labels", "colour", "normals"
+    (cameras, height, width, 3), and of "mono" (cameras, height, width)."""
+    kinds = "depth", "labels", "colour", "normals", "mono"
     if kind not in kinds:
         raise Error(f"there are no images of '{kind}'; expected one of {', '.join(kinds)}")
     width, values = self._image_width(type), self.readings(type)
@@ -55,9 +55,14 @@ def _images(self, kind="depth", type="camera"):
         return self.hits(type).reshape(images.shape[:3])
     if kind == "colour" and columns > 1:
         return _numpy.nan_to_num(images[..., 1]).astype("<u4", order="C").view(_numpy.uint8).reshape(*images.shape[:3], 4)[..., 2::-1]
+    if kind == "mono" and columns > 1:
+        colours = self.images("colour", type)
+        if (colours != colours[..., :1]).any():
+            raise Error(f"'{type}' has colours; expected 'mono 1' in all cameras")
+        return colours[..., 0].copy()
     if kind == "normals" and columns > 2:
         return images[..., 2:5]
-    raise Error(f"'{type}' has no images of '{kind}'; expected 'rgb 1' for colour, or 'normals 1' for normals")
+    raise Error(f"'{type}' has no images of '{kind}'; expected 'rgb 1' for colour, 'mono 1' for mono, or 'normals 1' for normals")
 
 
 def _png(self):

@@ -492,7 +492,7 @@ class Simulation:
     def images(self, kind: str = "depth", type: str = "camera") -> NDArray[Any]:
         """Returns the newest images of all cameras: of "depth" (cameras, height, width) [m], "labels" (cameras, height,
         width), the hits, and "normals" (cameras, height, width, 3) without a copy, of "colour" (cameras, height, width, 3)
-        as new bytes."""
+        and of "mono" (cameras, height, width) as new bytes."""
     def valid(self, type: str, without_noise: bool = False) -> NDArray[np.bool_]:
         """Returns a new array (sensors, elements): True if the element was measured and a stated bound holds.
         without_noise=True uses `bound_without_noise`, which noisy sensors also have."""
