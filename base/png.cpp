@@ -59,14 +59,4 @@ std::string encode_png(std::span<const std::uint16_t> grey, int width, int heigh
   return encode(std::as_bytes(grey), width, height, format, 0.0);
 }
 
-std::vector<std::uint8_t> color_bytes(std::span<const double> reading, std::size_t width) {
-  std::vector<std::uint8_t> bytes(3 * (reading.size() / width));
-  for (std::size_t i = 0; 3 * i < bytes.size(); ++i) {
-    const double value = reading[i * width + 1];
-    const auto rgb = static_cast<std::uint32_t>(value >= 0.0 && value < 0x1p24 ? value : 0.0);
-    for (const int part : {0, 1, 2}) bytes[3 * i + part] = static_cast<std::uint8_t>(rgb >> (16 - 8 * part));
-  }
-  return bytes;
-}
-
 }  // namespace sf::base

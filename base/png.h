@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace sf::base {
 
@@ -21,9 +20,5 @@ std::string encode_png(std::span<const std::uint8_t> pixels, int width, int heig
 /// Returns the bytes of a PNG file with 16 bits per pixel. @param grey row by row, the top row first
 std::string encode_png(std::span<const std::uint16_t> grey, int width, int height,
                        PngContent content = PngContent::figure);
-
-/// Returns the red, green and blue of each pixel of a camera's reading with colours.
-/// @param width numbers per pixel, of which the second is the colour, 0xRRGGBB; others are black
-std::vector<std::uint8_t> color_bytes(std::span<const double> reading, std::size_t width);
 
 }  // namespace sf::base

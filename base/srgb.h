@@ -7,6 +7,9 @@
 
 namespace sf::base {
 
+/// Weights of linear red, green and blue in the luminance (Rec. 709).
+inline constexpr glm::vec3 kLuminance{0.2126f, 0.7152f, 0.0722f};
+
 /// Linear red, green and blue in [0, 1] of 0xAARRGGBB.
 glm::vec3 linear_color(std::uint32_t color);
 

@@ -164,7 +164,7 @@ void add_elements(const record::SensorInfo& sensor, Json& row) {
       row["range_max"] = element.range_max;
     } else if (element.message == Message::magnetic_field) {
       row["elements"].push_back(pose_json(element.X_SE));
-    } else if (element.message == Message::depth_png || element.message == Message::color_png) {
+    } else if (element.message == Message::depth_png || element.message == Message::color_file) {
       row["camera"] = camera_json(sensor, element);  // the colours, if there are any, follow the depths
     } else if (element.message == Message::map) {
       const maps::GridGeometry& grid = element.grid;

@@ -49,7 +49,7 @@ struct StandardTopic {
     depth_image,
     color_image,
     depth_png,
-    color_png,
+    color_file,
     camera_info
   };
   Message message = Message::range;
@@ -76,6 +76,8 @@ struct StandardTopic {
   // For images and CameraInfo, of which an element is the whole reading. X_SE is the optical frame (REP 103).
   std::uint32_t columns = 0, rows = 0;  ///< [px]
   base::Lens lens;
+  bool mono = false;  ///< colours are grey
+  int jpeg = 0;       ///< quality of files of colours, in [1, 100]; 0: PNG
 
   // For readings in three dimensions: of an imu, a compass or a radar, whose vectors are turned into frame `frame`,
   // which is level on a level robot, and of a receiver with an altitude:
@@ -87,8 +89,12 @@ struct StandardTopic {
   double sigma = 0.0;
 };
 
-/// Which messages have the images of cameras.
-enum class ImageMessages : std::uint8_t { png, raw, both };
+/// The messages with the images of cameras.
+struct ImageMessages {
+  enum class Files : std::uint8_t { camera, png, jpeg };
+  bool compressed = true, raw = false;  ///< CompressedImage, Image
+  Files files = Files::camera;          ///< of colours; camera: JPEG of those that ask for it, else PNG
+};
 
 struct SensorInfo {
   std::uint8_t type = 0;  ///< id of a row of `RunInfo::sensor_types`

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/camera_pixels.h"
 #include "base/echo.h"
 #include "base/elementary.h"
 #include "base/png.h"
@@ -209,9 +210,11 @@ void put_depth_image(CdrWriter& cdr, const StandardTopic& topic, std::span<const
     cdr.put_packed(base::rep117_range(values[i], {topic.range_min, topic.range_max}));
 }
 
+std::string_view encoding_of(const StandardTopic& topic) { return topic.mono ? "mono8" : "rgb8"; }
+
 void put_color_image(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
-  put_image_header(cdr, topic, "rgb8", 3);
-  for (const std::uint8_t part : base::color_bytes(values, topic.width)) cdr.put_packed(part);
+  put_image_header(cdr, topic, encoding_of(topic), topic.mono ? 1 : 3);
+  for (const std::uint8_t part : base::image_bytes(values, topic.width, topic.mono)) cdr.put_packed(part);
 }
 
 void put_file(CdrWriter& cdr, std::string_view header, std::string_view file) {
@@ -222,24 +225,18 @@ void put_file(CdrWriter& cdr, std::string_view header, std::string_view file) {
 
 /// Millimetres, since inverse depths, which the plug-in makes of 32FC1, would be exact to 1 % only.
 void put_depth_png(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
-  std::vector<std::uint16_t> depths;
-  for (std::size_t i = 0; i < values.size(); i += topic.width) {
-    const bool seen = base::echo_of(values[i], {topic.range_min, topic.range_max}) == base::Echo::valid;
-    const double millimetres = seen ? std::round(1e3 * values[i]) : 0.0;
-    depths.push_back(static_cast<std::uint16_t>(millimetres > 65535.0 ? 0.0 : millimetres));
-  }
   cdr.put(std::string_view("16UC1; compressedDepth png"));
-  put_file(cdr, std::string(12, '\0'),  // of the plug-in, with parameters of inverse depths
-           base::encode_png(depths, static_cast<int>(topic.columns), static_cast<int>(topic.rows),
-                            base::PngContent::photograph));
+  put_file(
+      cdr, std::string(12, '\0'),  // of the plug-in, with parameters of inverse depths
+      base::encode_png(base::millimetre_depths(values, topic.width, {topic.range_min, topic.range_max}),
+                       static_cast<int>(topic.columns), static_cast<int>(topic.rows), base::PngContent::photograph));
 }
 
-/// The plug-in's readers decode files as blue, green and red, and make rgb8 of them.
-void put_color_png(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
-  cdr.put(std::string_view("rgb8; png compressed bgr8"));
-  put_file(cdr, "",
-           base::encode_png(base::color_bytes(values, topic.width), static_cast<int>(topic.columns),
-                            static_cast<int>(topic.rows), base::PngContent::photograph));
+/// The plug-in's readers decode files of colours as blue, green and red, and make rgb8 of them.
+void put_color_file(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
+  cdr.put(std::string(encoding_of(topic)) + (topic.jpeg > 0 ? "; jpeg" : "; png") + " compressed " +
+          (topic.mono ? "mono8" : "bgr8"));
+  put_file(cdr, "", base::color_file(values, topic.width, {topic.columns, topic.rows, topic.mono, topic.jpeg}));
 }
 
 void put_camera_info(CdrWriter& cdr, const StandardTopic& topic) {
@@ -282,7 +279,7 @@ std::string_view type_of(Message message) {
     case Message::color_image:
       return kImage;
     case Message::depth_png:
-    case Message::color_png:
+    case Message::color_file:
       return kCompressedImage;
     case Message::camera_info:
       return kCameraInfo;
@@ -314,8 +311,8 @@ void encode_standard(const StandardTopic& topic, std::int64_t time, std::span<co
       return put_color_image(cdr, topic, values);
     case Message::depth_png:
       return put_depth_png(cdr, topic, values);
-    case Message::color_png:
-      return put_color_png(cdr, topic, values);
+    case Message::color_file:
+      return put_color_file(cdr, topic, values);
     case Message::camera_info:
       return put_camera_info(cdr, topic);
   }

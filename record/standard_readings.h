@@ -25,10 +25,10 @@ std::string_view type_of(StandardTopic::Message message);
 ///   map             words (maps/grid.h): -1 unexplored, 0 free, 100 occupied
 ///   depth_image     32FC1 [m] along the optical axis; +infinity without a surface before range_max, -infinity for one
 ///                   that is too near (REP 118)
-///   color_image     rgb8
+///   color_image     rgb8, or mono8 of grey colours
 ///   depth_png       CompressedImage as of compressed_depth_image_transport: 16UC1 [mm] as PNG after a header of twelve
 ///                   bytes; 0 without a surface, too near, or from 65.5355 m
-///   color_png       CompressedImage as of compressed_image_transport: rgb8 as PNG
+///   color_file      CompressedImage as of compressed_image_transport: the same as PNG or JPEG
 ///   camera_info     of the distorted images; P is K, as nothing is rectified
 /// @param time [ns] of the measurement
 /// @param values of the whole reading, with a range below `range_min` for a surface that is too near; in the layout of

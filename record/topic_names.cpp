@@ -81,7 +81,7 @@ const char* word_of(StandardTopic::Message message) {
       return "image_raw";
     case StandardTopic::Message::depth_png:
       return "depth/image_raw/compressedDepth";
-    case StandardTopic::Message::color_png:
+    case StandardTopic::Message::color_file:
       return "image_raw/compressed";
     case StandardTopic::Message::camera_info:
       return "camera_info";

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/camera_pixels.h"
 #include "base/png.h"
 #include "control/lane_view.h"
 #include "farm/farm.h"

@@ -19,10 +19,10 @@ struct RunSettings {
   bool estimated = false;                        ///< states are estimates, recorded with their quality
   bool noise = true;                             ///< noisy sensors have noise
   std::vector<record::JoinedMover> joined = {};  ///< movers of the world that were not in the recording's world
-  bool too_near_min = false;  ///< surfaces nearer than a sensor's minimum range are recorded as that minimum
-  record::Naming naming;      ///< of topics and frames
-  record::ImageMessages images = record::ImageMessages::png;  ///< of cameras
-  std::string faults = {};                                    ///< of sensors (faults_text); empty: none
+  bool too_near_min = false;     ///< surfaces nearer than a sensor's minimum range are recorded as that minimum
+  record::Naming naming;         ///< of topics and frames
+  record::ImageMessages images;  ///< of cameras
+  std::string faults = {};       ///< of sensors (faults_text); empty: none
 };
 
 /// [m] Largest rounding of a range recorded by base::rep117_range: one float32 step below range_max, where a range that

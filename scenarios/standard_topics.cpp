@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/elementary.h"
+#include "base/jpeg.h"
 #include "base/tilted_pose.h"
 #include "sensors/camera.h"
 #include "sensors/compass.h"
@@ -89,11 +90,18 @@ base::TiltedPose optical_frame(const sensors::SensorSpec& row, const sensors::Ca
 
 std::vector<Message> image_messages(record::ImageMessages images, bool rgb) {
   std::vector<Message> messages{Message::camera_info};
-  if (images != record::ImageMessages::png) messages.push_back(Message::depth_image);
-  if (images != record::ImageMessages::png && rgb) messages.push_back(Message::color_image);
-  if (images != record::ImageMessages::raw) messages.push_back(Message::depth_png);
-  if (images != record::ImageMessages::raw && rgb) messages.push_back(Message::color_png);
+  if (images.raw) messages.push_back(Message::depth_image);
+  if (images.raw && rgb) messages.push_back(Message::color_image);
+  if (images.compressed) messages.push_back(Message::depth_png);
+  if (images.compressed && rgb) messages.push_back(Message::color_file);
   return messages;
+}
+
+/// Quality of a camera's JPEG files; 0: PNG.
+int jpeg_of(const sensors::CameraSettings& camera, record::ImageMessages::Files files) {
+  using Files = record::ImageMessages::Files;
+  if (files == Files::jpeg && camera.jpeg == 0) return base::kJpegQuality;
+  return files == Files::png ? 0 : camera.jpeg;
 }
 
 }  // namespace
@@ -138,7 +146,9 @@ void add_standard_topics(const sensors::SensorSet& sensor_set, record::ImageMess
                         .width = camera.columns(),
                         .columns = camera.width,
                         .rows = camera.height,
-                        .lens = camera.lens};
+                        .lens = camera.lens,
+                        .mono = camera.mono,
+                        .jpeg = jpeg_of(camera, images.files)};
     for (const Message message : image_messages(images, camera.rgb)) {
       topic.message = message;
       add(row, sensors::kCamera, topic);

@@ -381,7 +381,7 @@ model( name "house" pose [4 3.5 0 0] size [3 2 2] color "tan" )
 model( name "kiosk" pose [3.4 -2.1 0 15] size [0.9 0.9 1.1] color "dark sea green" )
 model( name "crate" pose [2.2 2 0 40] size [0.5 0.5 0.4] color "sienna" )
 rover( name "rover1" pose [-4 0 0 0]  lidar( preset "VLP-16" columns 450 noise 0 size [0.1 0.1 0.08] rate 10 )
-  camera( name "eye" resolution [640 480] fov 80 distortion [-0.2 0.04 0.001 -0.001 0] range [0 60] rgb 1 pose6 [0 0 0.05 3 14 2] rate 10 ) )
+  camera( name "eye" resolution [640 480] fov 80 distortion [-0.2 0.04 0.001 -0.001 0] range [0 60] mono 1 jpeg 90 pose6 [0 0 0.05 3 14 2] rate 10 ) )
 rover( name "rover2" pose [0 0.5 0 100] color "firebrick" )
 rover( name "rover3" pose [1.5 -0.8 0 200] color "gold" )`;
 }
@@ -418,6 +418,13 @@ async function watchOverlay(browser, requests) {
   await page.keyboard.press("c");
   await until(page, "nothing over the image", () => { const { points = 0, robots, cells, tracks, arcs } = view.over?.drawn ?? {}; return points > 500 && robots === 2 && cells > 100 && tracks > 0 && arcs > 0; });
   check((await page.evaluate(() => view.drawing.selected)) === 0, "the camera's robot is not selected");
+  const shades = await page.evaluate(() => {
+    const [canvas] = document.querySelectorAll("#view-camera .picture canvas"), { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const found = new Set();
+    for (let i = 0; i < data.length; i += 4) found.add(data[i] === data[i + 1] && data[i] === data[i + 2] ? data[i] : "coloured");
+    return [...found];
+  });
+  check(shades.length > 20 && !shades.includes("coloured"), `shades of a grey JPEG image: ${shades}`);
   if (picture) {
     await page.evaluate(() => new Promise((done) => setTimeout(done, 4000)));
     await page.screenshot({ path: picture.replace(/(\.\w+)?$/, "-overlay$1") });

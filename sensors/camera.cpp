@@ -48,6 +48,14 @@ std::vector<SpatialScanner> scanners_of(const std::vector<CameraSettings>& camer
 
 double error_of(const CameraSettings& s) { return s.mode == 0 ? scene::kRangeError : scene::kSingleRangeError; }
 
+/// Replaces colours by their luminance.
+void make_grey(std::uint32_t beams, CameraLight::Lanes& lanes) {
+  for (std::uint32_t k = 0; k < beams; ++k) {
+    const glm::vec3 color(lanes.light[0][k], lanes.light[1][k], lanes.light[2][k]);
+    for (auto& light : lanes.light) light[k] = glm::dot(base::kLuminance, color);
+  }
+}
+
 class Cameras : public SpatialScans {
  public:
   Cameras(const SensorContext& context, const ParsedSensors& sensors);
@@ -134,6 +142,7 @@ void Cameras::follow(std::size_t i, const base::RigidTransform& X_WS, const scen
   light_->shade(X_WS, tile, {s.range_max, static_cast<float>(pixel), !s.lens.fisheye}, surfaces, scratch);
   const auto& light = scratch.lanes.light;
   const std::uint32_t beams = tile.used * scene::kWidth;
+  if (s.mono) make_grey(beams, scratch.lanes);
   if (s.is_plain()) {
     std::uint32_t colors[scene::kTileBeams];
     base::srgb_colors(light[0], light[1], light[2], std::span(colors).first(beams));
@@ -163,7 +172,7 @@ std::uint32_t Cameras::color_of(std::size_t i, std::size_t pixel, std::span<cons
         episodes().key(base::RandomStream::spatial_range, row.mover, kNoiseId + row.sensor, sample.sequence);
     const auto index = static_cast<std::uint32_t>(2 * pixel);
     const auto a = base::random_normal(key, index), b = base::random_normal(key, index + 1);
-    const glm::dvec3 normal(a[0], a[1], b[0]);
+    const glm::dvec3 normal = s.mono ? glm::dvec3(a[0]) : glm::dvec3(a[0], a[1], b[0]);
     for (int k = 0; k < 3; ++k) mean[k] += normal[k] * std::sqrt(s.read_noise * s.read_noise + s.shot_noise * mean[k]);
   }
   return base::srgb_color(glm::vec3(mean));
@@ -287,8 +296,8 @@ double wire_error(const SensorSpec& sensor, const base::ReadingBlock& reading) {
 PayloadPart decode(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                    WireFormat wire) {
   const std::uint16_t form = wire == WireFormat::farm ? camera_form(type, payload) : std::uint16_t{0};
-  if (form > kImageForm) return {.fault = PayloadError::out_of_range};
-  if (form == kImageForm) {
+  if (form > kJpegForm) return {.fault = PayloadError::out_of_range};
+  if (form >= kPngForm) {
     ImagePart image;
     const PayloadError fault = read_image(payload, image);
     return {.fault = fault, .part = image.part, .parts = 0};

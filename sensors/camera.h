@@ -3,8 +3,8 @@
 //
 // In a world file, inside a robot:
 //   camera( resolution [320 240]  fov 80  range [0 50]  rgb 1  normals 1  pose6 [0 0 0.3 0 5 0] )
-// A reading has one depth per pixel, row by row from the top left, then its colour 0xRRGGBB, then its normal, as far as
-// asked for. `hits` are the labels.
+// A reading has one depth per pixel, row by row from the top left, then its colour 0xRRGGBB (grey of `mono 1`), then
+// its normal, as far as asked for. `hits` are the labels.
 
 #include <cstdint>
 

@@ -97,10 +97,14 @@ void read_depths(const world::Sensor& sensor, CameraSettings& s) {
 }
 
 void read_colours(const world::Sensor& sensor, CameraSettings& s) {
+  s.mono = whole(sensor, "mono", 0, 0, 1) == 1;
   s.rgb = whole(sensor, "rgb", 0, 0, 1) == 1;
-  for (const char* key : {"samples", "exposure", "gain", "vignetting", "noise"})
+  if (s.rgb && s.mono) refuse(sensor, "mono", "'rgb' and 'mono'; expected one of them");
+  s.rgb = s.rgb || s.mono;
+  for (const char* key : {"jpeg", "samples", "exposure", "gain", "vignetting", "noise"})
     if (!s.rgb && find(sensor, key) != nullptr)
-      refuse(sensor, key, fmt::format("'{}' changes colours; expected 'rgb 1' with it", key));
+      refuse(sensor, key, fmt::format("'{}' changes colours; expected 'rgb 1' or 'mono 1' with it", key));
+  s.jpeg = static_cast<int>(whole(sensor, "jpeg", 0, 0, 100));
   s.samples = whole(sensor, "samples", 1, 1, kMostSamples);
   if (s.width * s.height > kMostCameraBeams / s.samples)
     refuse(sensor, "samples",

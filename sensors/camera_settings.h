@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/camera_pixels.h"
 #include "base/lens.h"
 #include "base/rigid_transform.h"
 #include "sensors/lidar_beams.h"
@@ -21,6 +22,8 @@ struct CameraSettings {
   bool normals = false;
   std::uint8_t mode = 0;      ///< row of kCameraModes
   bool rgb = false;           ///< pixels have colours
+  bool mono = false;          ///< and these are grey, of the luminance (Rec. 709)
+  int jpeg = 0;               ///< quality of JPEG files in packets and messages, in [1, 100]; 0: PNG
   std::uint32_t samples = 1;  ///< beams per pixel; depths, labels and normals are those of the first
   double exposure = 0.0;      ///< [s] before the time of a row, divided among its samples
   double readout = 0.0;       ///< [s] from the first row to one below the last (rolling shutter); 0: all at once
@@ -35,12 +38,14 @@ struct CameraSettings {
   std::size_t columns() const { return normals ? 5 : rgb ? 2 : 1; }  ///< numbers per pixel: depth, colour, normal
   /// Returns whether the colour of a pixel is that of its one beam.
   bool is_plain() const { return samples == 1 && gain == 1.0 && vignetting == 0.0 && !is_noisy(); }
+  base::ColorFormat format() const { return {width, height, mono, jpeg}; }
   bool is_noisy() const { return read_noise > 0.0 || shot_noise > 0.0; }
 };
 
-inline constexpr std::string_view kCameraKeys[] = {
-    "resolution", "fov",      "focal",   "principal", "distortion", "fisheye",    "range", "normals", "rgb",
-    "samples",    "exposure", "rolling", "scan_time", "gain",       "vignetting", "noise", "pose6",   "pantilt"};
+inline constexpr std::string_view kCameraKeys[] = {"resolution", "fov",        "focal",    "principal", "distortion",
+                                                   "fisheye",    "range",      "normals",  "rgb",       "mono",
+                                                   "jpeg",       "samples",    "exposure", "rolling",   "scan_time",
+                                                   "gain",       "vignetting", "noise",    "pose6",     "pantilt"};
 
 /// Reads the settings of cameras. Cameras with equal images share their beams.
 class CameraReader {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "base/camera_pixels.h"
 #include "base/error.h"
-#include "base/png.h"
 #include "sensors/camera.h"
 #include "sensors/laser_packets.h"
 
@@ -21,26 +21,25 @@ std::uint32_t count_of(std::uint32_t total, std::uint32_t part) {
 
 }  // namespace
 
-std::string image_file(const SensorSet& sensor_set, const base::ReadingBlock& reading) {
+ImageFile image_file(const SensorSet& sensor_set, const base::ReadingBlock& reading) {
   if (reading.type != kCamera) return {};
   const CameraSettings& camera = sensor_set.settings_of<CameraSettings>(kCamera, reading.mover)[reading.sensor];
   if (!camera.rgb) return {};
-  return base::encode_png(base::color_bytes(reading.values, camera.columns()), static_cast<int>(camera.width),
-                          static_cast<int>(camera.height), base::PngContent::photograph);
+  return {base::color_file(reading.values, camera.columns(), camera.format()), camera.jpeg > 0 ? kJpegForm : kPngForm};
 }
 
-std::uint8_t encode_image(std::string_view file, std::uint32_t part, base::Bytes& out) {
-  SF_CHECK(file.size() <= kMostImageBytes && part < image_parts(file.size()),
-           "part " + std::to_string(part) + " of " + std::to_string(file.size()) + " bytes");
-  const auto total = static_cast<std::uint32_t>(file.size()), count = count_of(total, part);
+std::uint8_t encode_image(const ImageFile& file, std::uint32_t part, base::Bytes& out) {
+  SF_CHECK(file.bytes.size() <= kMostImageBytes && part < image_parts(file.bytes.size()),
+           "part " + std::to_string(part) + " of " + std::to_string(file.bytes.size()) + " bytes");
+  const auto total = static_cast<std::uint32_t>(file.bytes.size()), count = count_of(total, part);
   base::ByteWriter writer(out);
   writer.put(total);
   writer.put(part * kImagePartBytes);
   writer.put(static_cast<std::uint16_t>(part));
   writer.put(static_cast<std::uint16_t>(image_parts(total)));
   writer.put(static_cast<std::uint16_t>(count));
-  writer.put(kImageForm);
-  writer.put_bytes(file.data() + part * kImagePartBytes, count);
+  writer.put(file.form);
+  writer.put_bytes(file.bytes.data() + part * kImagePartBytes, count);
   return kCamera + kExtended;
 }
 
@@ -55,6 +54,7 @@ PayloadError read_image(std::span<const std::uint8_t> payload, ImagePart& part) 
   part.part = in.get<std::uint16_t>(), part.parts = in.get<std::uint16_t>();
   const std::size_t size = kPartHeaderBytes + in.get<std::uint16_t>();
   if (payload.size() != size) return payload.size() < size ? PayloadError::too_short : PayloadError::too_long;
+  part.form = in.get<std::uint16_t>();
   part.bytes = payload.subspan(kPartHeaderBytes);
   const bool whole = part.total >= 1 && part.total <= kMostImageBytes && part.parts == image_parts(part.total) &&
                      part.part < part.parts && part.first == part.part * kImagePartBytes &&

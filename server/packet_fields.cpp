@@ -302,10 +302,11 @@ PacketStatus add_reading(const netio::Header& header, std::span<const std::uint8
   const netio::PayloadInfo info = inspect_payload({&type, &any}, sensors::WireFormat::farm, header, payload);
   if (info.status != PacketStatus::accepted) return info.status;
   const bool extended = static_cast<std::uint8_t>(header.type) >= sensors::kExtended;
-  if (sensors::camera_form(static_cast<std::uint8_t>(header.type), payload) == sensors::kImageForm) {
+  if (sensors::camera_form(static_cast<std::uint8_t>(header.type), payload) >= sensors::kPngForm) {
     sensors::ImagePart image;
     sensors::read_image(payload, image);
     add_part(image, out);
+    add(out, "form", image.form);
     add(out, "image", std::vector<double>(image.bytes.begin(), image.bytes.end()));
   } else if (type.id == sensors::kLidar || type.id == sensors::kCamera) {
     sensors::LidarPart scan;

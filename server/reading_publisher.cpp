@@ -62,7 +62,7 @@ ReadingPublisher::Job ReadingPublisher::make_job(const AddressedReading& address
   Job job{addressed, sensor_set_.group(reading.type)->type, &sensor_set_.row(reading), &stream, stream.sent};
   if (stream.parts > 0 && layout_.wire == sensors::WireFormat::farm)
     job.image = sensors::image_file(sensor_set_, reading);
-  job.parts = stream.parts + sensors::image_parts(job.image.size());
+  job.parts = stream.parts + sensors::image_parts(job.image.bytes.size());
   return job;
 }
 

@@ -11,6 +11,7 @@
 #include "base/thread_pool.h"
 #include "farm/token_bucket.h"
 #include "netio/outbox.h"
+#include "sensors/image_packets.h"
 #include "sensors/sensor_set.h"
 #include "server/stream_layout.h"
 #include "world/world.h"
@@ -74,7 +75,7 @@ class ReadingPublisher {
     const sensors::SensorSpec* row = nullptr;
     Stream* stream = nullptr;
     std::uint32_t sequence = 0;
-    std::string image = {};     ///< file of a camera's colours; empty: none
+    sensors::ImageFile image;   ///< of a camera's colours; empty: none
     std::uint32_t parts = 0;    ///< datagrams, those of the file included
     std::size_t place = 0;      ///< of its first datagram
     std::uint64_t counter = 0;  ///< of its first datagram's signature

@@ -135,9 +135,11 @@ void write_image(const world::World& world, const sensors::SensorSet& sensor_set
   const sensors::CameraSettings& camera = cameras[reading.sensor];
   if (options.image == ImageKind::normals && !camera.normals)
     throw base::InputError(world.file, 0, fmt::format("'{}' has no normals; expected 'normals 1' in the camera", name));
-  if (options.image == ImageKind::colour && !camera.rgb)
+  if (options.image == ImageKind::colour && (!camera.rgb || camera.mono))
     throw base::InputError(world.file, 0, fmt::format("'{}' has no colours; expected 'rgb 1' in the camera", name));
-  viz::write_picture(options.out, camera_png(camera, reading, *options.image));
+  if (options.image == ImageKind::mono && !camera.mono)
+    throw base::InputError(world.file, 0, fmt::format("'{}' is not grey; expected 'mono 1' in the camera", name));
+  viz::write_picture(options.out, camera_file(camera, reading, *options.image, is_jpeg(options.out)));
   print_message("wrote {}", options.out);
   if (options.image == ImageKind::labels) warn_of_labels(reading);
 }

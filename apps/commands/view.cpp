@@ -169,7 +169,7 @@ int view(const ViewOptions& options) {
                                              {.seed = recording.info.seed,
                                               .record_readings = !recording.readings.empty(),
                                               .naming = naming,
-                                              .images = record::ImageMessages::both});
+                                              .images = {.raw = true}});
   record::name_frames(info);
   info.world = recording.info.world;
   scenarios::Replay replay(recording, info);

@@ -51,7 +51,7 @@ LiveBridges::LiveBridges(const BridgeOptions& options, const world::World& world
       settings_(settings),
       simulated_(simulated),
       drives_(drives) {
-  settings_.images = record::ImageMessages::both;  // encoded for subscribers alone
+  settings_.images.compressed = settings_.images.raw = true;  // encoded for subscribers alone
   if (!options.any()) return;
   info_ = scenarios::run_info(world, sensor_set, settings_);
   print_taken_names(record::name_frames(info_));

@@ -180,11 +180,17 @@ CLI::Option* add_compression(CLI::App& app, CompressionOption& o) {
 
 CLI::Option* add_images(CLI::App& app, ImagesOption& o) {
   using record::ImageMessages;
+  using Files = ImageMessages::Files;
   return add_choice<ImageMessages, ImageMessages>(
              app, "--images", o.images,
-             {{"png", ImageMessages::png}, {"raw", ImageMessages::raw}, {"both", ImageMessages::both}},
-             "Messages with the images of cameras in recordings: png (CompressedImage), raw (Image), or both")
-      ->default_str("png");
+             {{"compressed", {}},
+              {"png", {.files = Files::png}},
+              {"jpeg", {.files = Files::jpeg}},
+              {"raw", {.compressed = false, .raw = true}},
+              {"both", {.raw = true}}},
+             "Messages with the images of cameras: compressed (CompressedImage: PNG, or JPEG of cameras with `jpeg`), "
+             "png or jpeg (of all cameras), and in recordings raw (Image), or both")
+      ->default_str("compressed");
 }
 
 void add_wire(CLI::App& app, WireOption& o) {

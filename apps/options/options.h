@@ -63,7 +63,7 @@ struct CompressionOption {
 };
 
 struct ImagesOption {
-  record::ImageMessages images = record::ImageMessages::png;  ///< of recordings
+  record::ImageMessages images;  ///< of recordings and bridges
 };
 
 /// A video of a run, or its frames.

@@ -79,16 +79,23 @@ void add_field(CLI::App& app, Call& call) {
       ->type_name("FILE");
 }
 
-/// @return why the file is no PNG; empty if it is
-std::string png_file(const std::string& text) {
+/// @return why the file is no image; empty if it is
+std::string image_file(const std::string& text) {
   std::filesystem::path file(text);
-  if (file.extension() == ".png") return "";
-  return fmt::format("images are PNG files; write {}", file.replace_extension(".png").string());
+  if (file.extension() == ".png" || is_jpeg(text)) return "";
+  return fmt::format("images are PNG or JPEG files; write {}", file.replace_extension(".png").string());
+}
+
+void check_sense(const CLI::App& sense) {
+  if (sense.count("--image") == 0 || !is_jpeg(sense.get_option("--out")->as<std::string>())) return;
+  const auto kind = sense.get_option("--image")->as<std::string>();
+  if (kind != "colour" && kind != "mono")
+    throw CLI::ValidationError("--out", kind + " would change in a JPEG file; write PNG");
 }
 
 void add_sense(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("sense", "Compute one reading of one sensor, without noise, to check a world");
-  auto& o = add_command(*sub, call, sense);
+  auto& o = add_command(*sub, call, sense, [sub] { check_sense(*sub); });
   add_examples(*sub, {"worlds/rooms.world --pose 1,2,90", "worlds/rooms.world --robot roomba1 --type laser --json"});
   add_world(*sub, o);
   add_accuracy(*sub, o);
@@ -109,9 +116,10 @@ void add_sense(CLI::App& app, Call& call) {
   const std::vector<std::pair<std::string, ImageKind>> kinds{{"depth", ImageKind::depth},
                                                              {"labels", ImageKind::labels},
                                                              {"normals", ImageKind::normals},
-                                                             {"colour", ImageKind::colour}};
+                                                             {"colour", ImageKind::colour},
+                                                             {"mono", ImageKind::mono}};
   CLI::Option* const out =
-      sub->add_option("-o,--out", o.out, "PNG file of --image")->check(png_file)->type_name("FILE");
+      sub->add_option("-o,--out", o.out, "PNG or JPEG file of --image")->check(image_file)->type_name("FILE");
   CLI::Option* const image =
       sub->add_option_function<std::string>(
              "--image",
@@ -119,8 +127,8 @@ void add_sense(CLI::App& app, Call& call) {
                o.image = std::ranges::find(kinds, word, &std::pair<std::string, ImageKind>::first)->second;
              },
              "Write this image of a camera: depth (16 bits, mm), labels (16 bits: 0 nothing, 1 floor, 2 + row of the "
-             "model), normals or colour (8 bits)")
-          ->check(CLI::IsMember({"depth", "labels", "normals", "colour"}))
+             "model), normals, colour or mono (8 bits)")
+          ->check(CLI::IsMember({"depth", "labels", "normals", "colour", "mono"}))
           ->type_name("KIND")
           ->needs(out);
   out->needs(image);

@@ -46,7 +46,17 @@ void refuse_options_of_worlds(const CLI::App& run) {
       throw CLI::ValidationError(option, fmt::format("applies to worlds; a scenario sets `{}`: change {}", key, world));
 }
 
+/// Bridges offer raw images in any case.
+void check_images(const CLI::App& sub, const std::string& recorded) {
+  if (sub.count("--images") == 0 || sub.count(recorded) > 0) return;
+  const auto word = sub.get_option("--images")->as<std::string>();
+  if (word == "raw" || word == "both") throw CLI::ValidationError("--images", word + " needs " + recorded);
+  if (sub.count("--ros2") + sub.count("--view") == 0)
+    throw CLI::ValidationError("--images", "needs " + recorded + ", --ros2 or --view");
+}
+
 void check_run(const CLI::App& run) {
+  check_images(run, "--record-readings");
   refuse_options_of_worlds(run);
   check_naming(run, "--record-readings");
   require_any(run, names_of_ports(run), {"--send"});
@@ -90,10 +100,10 @@ void add_run(CLI::App& app, Call& call) {
   auto* record = sub->add_option("--record", o.record, "Folder for the recording of the run (run.mcap)")
                      ->check(not_empty("a folder"))
                      ->type_name("DIR");
-  auto* readings = sub->add_flag("--record-readings", o.record_readings,
-                                 "Also record the readings, not only the states from which they can be recomputed")
-                       ->needs(record);
-  add_images(*sub, o)->needs(readings);
+  sub->add_flag("--record-readings", o.record_readings,
+                "Also record the readings, not only the states from which they can be recomputed")
+      ->needs(record);
+  add_images(*sub, o);
   add_compression(*sub, o)->needs(record);
   sub->add_option("--checkpoint", o.checkpoint,
                   "Write a checkpoint of the run every S simulated seconds (with --record)")
@@ -230,6 +240,7 @@ void check_serve(const CLI::App& sub) {
       sub.get_option("--clock")->as<std::string>() == "arrival")
     throw CLI::ValidationError("--clock", "arrival needs --filter: lateness is detected by timestamps");
   refuse_with_lockstep(sub);
+  check_images(sub, "--record");
   check_naming(sub);
   if (sub.count("--link-delay") > 0 && sub.count("--clock") > 0 &&
       sub.get_option("--clock")->as<std::string>() != "estimated")
@@ -329,7 +340,7 @@ void add_serve(CLI::App& app, Call& call) {
                                  "Folder for the recording of states, their quality, and readings (run.mcap)")
                      ->check(not_empty("a folder"))
                      ->type_name("DIR");
-  add_images(*sub, o)->needs(record);
+  add_images(*sub, o);
   add_compression(*sub, o)->needs(record);
   add_robots(*sub, o);
   add_robot_from(*sub, o);

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <vector>
 
+#include "base/jpeg.h"
+#include "base/marked_values.h"
 #include "base/png.h"
+
 namespace sf::apps {
 
 namespace {
@@ -14,31 +18,44 @@ std::uint16_t label_of(std::uint32_t hit) {
   return hit == base::kFloorHit ? std::uint16_t{1} : static_cast<std::uint16_t>(std::min(hit, kLargestLabel - 2) + 2);
 }
 
-std::string normals_png(const base::ReadingBlock& reading, int width, int height) {
+std::vector<std::uint16_t> labels_of(const base::ReadingBlock& reading) {
+  std::vector<std::uint16_t> labels;
+  for (const std::uint32_t hit : reading.hits) labels.push_back(label_of(hit));
+  return labels;
+}
+
+std::vector<std::uint16_t> depths_of(const sensors::CameraSettings& camera, const base::ReadingBlock& reading) {
+  std::vector<double> marked;
+  return base::millimetre_depths(base::marked_values(reading, marked), camera.columns(),
+                                 {camera.range_min, camera.range_max});
+}
+
+std::vector<std::uint8_t> normals_of(const base::ReadingBlock& reading) {
   std::vector<std::uint8_t> rgb;
   for (std::size_t i = 0; i < reading.hits.size(); ++i)
     for (std::size_t axis = 2; axis < 5; ++axis)
       rgb.push_back(reading.hits[i] == base::kNoHit
                         ? std::uint8_t{0}
                         : static_cast<std::uint8_t>(std::lround(127.5 * (1.0 + reading.values[5 * i + axis]))));
-  return base::encode_png(rgb, width, height);
+  return rgb;
 }
 
 }  // namespace
 
-std::string camera_png(const sensors::CameraSettings& camera, const base::ReadingBlock& reading, ImageKind kind) {
+bool is_jpeg(const std::string& file) {
+  const std::filesystem::path suffix = std::filesystem::path(file).extension();
+  return suffix == ".jpg" || suffix == ".jpeg";
+}
+
+std::string camera_file(const sensors::CameraSettings& camera, const base::ReadingBlock& reading, ImageKind kind,
+                        bool jpeg) {
   const auto width = static_cast<int>(camera.width), height = static_cast<int>(camera.height);
-  if (kind == ImageKind::normals) return normals_png(reading, width, height);
-  const std::size_t step = camera.columns();
-  if (kind == ImageKind::colour) return base::encode_png(base::color_bytes(reading.values, step), width, height);
-  std::vector<std::uint16_t> grey;
-  for (std::size_t i = 0; i < reading.hits.size(); ++i) {
-    const double millimetres = std::clamp(std::round(1e3 * reading.values[i * step]), 1.0, 65535.0);
-    const bool seen = reading.hits[i] != base::kNoHit;
-    grey.push_back(kind == ImageKind::labels ? label_of(reading.hits[i])
-                                             : static_cast<std::uint16_t>(seen ? millimetres : 0.0));
-  }
-  return base::encode_png(grey, width, height);
+  if (kind == ImageKind::depth) return base::encode_png(depths_of(camera, reading), width, height);
+  if (kind == ImageKind::labels) return base::encode_png(labels_of(reading), width, height);
+  if (kind == ImageKind::normals) return base::encode_png(normals_of(reading), width, height);
+  base::ColorFormat format = camera.format();
+  format.jpeg = !jpeg ? 0 : camera.jpeg > 0 ? camera.jpeg : base::kJpegQuality;
+  return base::color_file(reading.values, camera.columns(), format);
 }
 
 }  // namespace sf::apps

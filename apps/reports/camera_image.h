@@ -11,12 +11,17 @@ namespace sf::apps {
 
 inline constexpr std::uint32_t kLargestLabel = 65535;  ///< also of all models beyond it
 
-enum class ImageKind { depth, labels, normals, colour };
+enum class ImageKind { depth, labels, normals, colour, mono };
 
-/// Returns a PNG file. Depth: 16 bits, millimetres, saturated; 0 without a surface. Labels: 16 bits, 0 without a
-/// surface, 1 for the floor and roads, 2 plus the row of the model, at most kLargestLabel. Normals: red, green and blue
-/// are x, y and z in the camera's frame, -1 as 0 and 1 as 255; black without a surface.
-/// @pre normals need CameraSettings::normals, colour needs CameraSettings::rgb
-std::string camera_png(const sensors::CameraSettings& camera, const base::ReadingBlock& reading, ImageKind kind);
+/// Returns whether a file to write is a JPEG, by its suffix.
+bool is_jpeg(const std::string& file);
+
+/// Returns a PNG or JPEG file. Depth: 16 bits, millimetres; 0 without a surface, too near, or from 65.5355 m. Labels:
+/// 16 bits, 0 without a surface, 1 for the floor and roads, 2 plus the row of the model, at most kLargestLabel. Normals:
+/// red, green and blue are x, y and z in the camera's frame, -1 as 0 and 1 as 255; black without a surface.
+/// @param jpeg of colour and mono only, in the camera's quality or the default one
+/// @pre normals need CameraSettings::normals, colour needs CameraSettings::rgb, mono CameraSettings::mono
+std::string camera_file(const sensors::CameraSettings& camera, const base::ReadingBlock& reading, ImageKind kind,
+                        bool jpeg);
 
 }  // namespace sf::apps

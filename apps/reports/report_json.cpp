@@ -108,7 +108,7 @@ Json image_json(const world::World& world, const sensors::CameraSettings& camera
     const std::span<const double> pixel = reading.values.subspan(i * width, width);
     depth.push_back(pixel[0]);
     labels.push_back(reading.hits[i] == base::kNoHit ? Json() : Json(hit_name(world, reading.hits[i])));
-    if (camera.rgb) rgb.push_back(static_cast<std::uint32_t>(pixel[1]));
+    if (camera.rgb) rgb.push_back(static_cast<std::uint32_t>(pixel[1]) & (camera.mono ? 0xFFu : 0xFFFFFFu));
     if (camera.normals) normals.push_back({pixel[2], pixel[3], pixel[4]});
   }
   Json json{{"resolution", {camera.width, camera.height}},
@@ -118,7 +118,7 @@ Json image_json(const world::World& world, const sensors::CameraSettings& camera
             {"fisheye", lens.fisheye},
             {"depth_m", std::move(depth)},
             {"labels", std::move(labels)}};
-  if (camera.rgb) json["rgb"] = std::move(rgb);
+  if (camera.rgb) json[camera.mono ? "mono" : "rgb"] = std::move(rgb);
   if (camera.normals) json["normals"] = std::move(normals);
   Json unsure = Json::array();
   for (std::size_t i = 0; i < reading.quality.size(); ++i)

@@ -312,8 +312,9 @@ typedef struct {
   unsigned width;                // values per row, of the first columns; 0: of all
   unsigned approaches;           // V2I: number of rows of eight values that are approaches; the others are stop lines
   double values[SF_MAX_VALUES];  // SI, row by row as in sf_types; NAN: no number; INFINITY: no return
-  const uint8_t* image;          // CAMERA_EXTENDED: part of a PNG file, in place of values, from byte words[1] on; as `states`
+  const uint8_t* image;          // CAMERA_EXTENDED: part of a file, in place of values, from byte words[1] on; as `states`
   unsigned image_bytes;          // 0: the values are depths
+  unsigned image_form;           // 1: a PNG file, 2: JPEG
   const uint8_t* states;         // NEIGHBOURS: V2V packets one after another; valid as long as the datagram
   const uint8_t* rows[3];        // TEAM_MAP: acknowledgements (4 u32 each), claim (2 u16 each), bytes; as `states`
   unsigned lengths[3];           // TEAM_MAP: number of integers in each of them
@@ -395,13 +396,14 @@ static const char* decode_echoes(sf_packet* p, const uint8_t* b, size_t size, un
   return NULL;
 }
 
-// A part of the PNG file with a camera's colours.
+// A part of the PNG or JPEG file with a camera's colours.
 static const char* decode_image(sf_packet* p, const uint8_t* b, size_t size) {
   uint32_t* const w = p->words;  // total, first, part, parts
   w[0] = (uint32_t)get(b, 4), w[1] = (uint32_t)get(b + 4, 4), w[2] = (uint32_t)get(b + 8, 2), w[3] = (uint32_t)get(b + 10, 2);
   p->image = b + 16;
   p->image_bytes = (unsigned)get(b + 12, 2);
-  if (get(b + 14, 2) != 1) return "out of range";
+  p->image_form = (unsigned)get(b + 14, 2);
+  if (p->image_form > 2) return "out of range";
   const char* const sized = check_size(size, 16 + (size_t)p->image_bytes);
   if (sized) return sized;
   return in_range(w[0] >= 1 && w[0] <= 4000000 && w[3] == (w[0] + 1239) / 1240 && w[2] < w[3] && w[1] == 1240 * w[2] &&
@@ -901,7 +903,7 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
     fputs(after, out);
   }
   if (p->image_bytes > 0) {
-    fprintf(out, "%simage =", before);
+    fprintf(out, "%sform = %u%s%simage =", before, p->image_form, after, before);
     for (unsigned i = 0; i < p->image_bytes; ++i) fprintf(out, " %u", p->image[i]);
     fputs(after, out);
     return;

@@ -168,13 +168,13 @@ def decode_laser(extended, payload):
 
 
 def decode_image(payload):
-    """A part of the PNG file with a camera's colours."""
-    total, first, part, parts, count, _ = struct.unpack_from("<IIHHHH", payload)
+    """A part of the file with a camera's colours: PNG (form 1) or JPEG (form 2)."""
+    total, first, part, parts, count, form = struct.unpack_from("<IIHHHH", payload)
     require(len(payload) >= 16 + count, "too short")
     require(len(payload) <= 16 + count, "too long")
-    require(1 <= total <= 4000000 and parts == -(-total // 1240) and part < parts)
+    require(form <= 2 and 1 <= total <= 4000000 and parts == -(-total // 1240) and part < parts)
     require(first == 1240 * part and count == min(1240, total - first))
-    return {"total": total, "first": first, "part": part, "parts": parts, "image": list(payload[16:])}
+    return {"total": total, "first": first, "part": part, "parts": parts, "form": form, "image": list(payload[16:])}
 
 
 class Images:
@@ -184,7 +184,7 @@ class Images:
         self.parts = {}  # by camera: sequence, and bytes by part
 
     def add(self, packet):
-        """Returns the bytes of a PNG file whose last missing part is in the packet, else None."""
+        """Returns the bytes of a PNG or JPEG file whose last missing part is in the packet, else None."""
         if "image" not in packet:
             return None
         camera = packet["robot"], packet["sensor"]
@@ -448,10 +448,9 @@ def decode(data):
         packet.update(decode_state(type, robot, payload))
     elif type in (LASER, LASER_EXTENDED):
         packet.update(decode_laser(type == LASER_EXTENDED, payload))
-    elif type == CAMERA_EXTENDED and payload[14:16] == b"\1\0":
+    elif type == CAMERA_EXTENDED and len(payload) >= 16 and payload[14:16] != b"\0\0":
         packet.update(decode_image(payload))
     elif type in (CAMERA, CAMERA_EXTENDED):
-        require(type == CAMERA or payload[14:16] in (b"", b"\0", b"\0\0"))
         image = decode_laser(type == CAMERA_EXTENDED, payload)
         packet.update({"depth_m" if key == "range_m" else key: value for key, value in image.items()})
     elif type in (LIDAR, LIDAR_EXTENDED):
@@ -741,7 +740,7 @@ def main():
     parser.add_argument("--rate", type=float, default=10.0, metavar="HZ", help="states per second, 1 to 1000")
     parser.add_argument("--sensor", type=read_sensor, action="append", metavar="TYPE[.NUMBER][=PORT]")
     parser.add_argument("--key", type=read_key, metavar="FILE", help="64 hexadecimal digits: sign, and check signatures")
-    parser.add_argument("--images", metavar="FOLDER", help="write each camera's newest image there, as camera-NUMBER.png")
+    parser.add_argument("--images", metavar="FOLDER", help="write each camera's newest image there, as camera-NUMBER.png or .jpg")
     parser.add_argument("--neighbours", action="store_true", help="print the states of other robots, too")
     # "-1,0.5,30" is a value of --pose, not an option.
     options = parser.parse_args("\0".join(sys.argv[1:]).replace("--pose\0", "--pose=").split("\0"))
@@ -765,7 +764,8 @@ def main():
             for packet in client.receive(due - time.monotonic()):
                 image = images.add(packet) if options.images else None
                 if image:
-                    with open("%s/camera-%d.png" % (options.images, packet["sensor"]), "wb") as file:
+                    suffix = "jpg" if packet["form"] == 2 else "png"
+                    with open("%s/camera-%d.%s" % (options.images, packet["sensor"], suffix), "wb") as file:
                         file.write(image)
                 if not (options.images and "image" in packet):
                     print(words(packet), flush=True)

@@ -48,9 +48,9 @@ def _camera(self, type, robot, sensor):
 def _images(self, kind="depth", type="camera", robot=None, sensor=0):
     """Returns the newest images of all cameras: of "depth" (cameras, height, width) [m], of "labels" (cameras, height,
     width), the hits, and of "normals" (cameras, height, width, 3) views without a copy; of "colour" a new array of bytes
-    (cameras, height, width, 3). With `robot`, a row of `poses`, that of its camera number `sensor` alone, without the
-    first axis."""
-    kinds = "depth", "labels", "colour", "normals"
+    (cameras, height, width, 3), and of "mono" (cameras, height, width). With `robot`, a row of `poses`, that of its camera
+    number `sensor` alone, without the first axis."""
+    kinds = "depth", "labels", "colour", "normals", "mono"
     if kind not in kinds:
         raise Error(f"there are no images of '{kind}'; expected one of {', '.join(kinds)}")
     sizes, values = self._image_sizes(type).reshape(-1, 2), self.readings(type)
@@ -75,9 +75,14 @@ def _images(self, kind="depth", type="camera", robot=None, sensor=0):
     if kind == "colour" and columns > 1:
         numbers = _numpy.nan_to_num(images[..., 1]).astype("<u4", order="C")
         return of(numbers.view(_numpy.uint8).reshape(*numbers.shape, 4)[..., 2::-1])
+    if kind == "mono" and columns > 1:
+        colours = self.images("colour", type, robot, sensor)
+        if (colours != colours[..., :1]).any():
+            raise Error(f"'{type}' has colours; expected 'mono 1' in all cameras")
+        return colours[..., 0].copy()
     if kind == "normals" and columns > 2:
         return of(images[..., 2:5])
-    raise Error(f"'{type}' has no images of '{kind}'; expected 'rgb 1' for colour, or 'normals 1' for normals")
+    raise Error(f"'{type}' has no images of '{kind}'; expected 'rgb 1' for colour, 'mono 1' for mono, or 'normals 1' for normals")
 
 
 def _png(self):

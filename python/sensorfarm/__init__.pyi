@@ -492,8 +492,8 @@ class Simulation:
     def images(self, kind: str = "depth", type: str = "camera", robot: int | None = None, sensor: int = 0) -> NDArray[Any]:
         """Returns the newest images of all cameras: of "depth" (cameras, height, width) [m], "labels" (cameras, height,
         width), the hits, and "normals" (cameras, height, width, 3) without a copy, of "colour" (cameras, height, width, 3)
-        as new bytes. With `robot`, a row of `poses`, that of its camera number `sensor` alone, without the first axis.
-        Raises Error without it if the cameras' images have different sizes."""
+        and of "mono" (cameras, height, width) as new bytes. With `robot`, a row of `poses`, that of its camera number
+        `sensor` alone, without the first axis. Raises Error without it if the cameras' images have different sizes."""
     def valid(self, type: str, without_noise: bool = False) -> NDArray[np.bool_]:
         """Returns a new array (sensors, elements): True if the element was measured and a stated bound holds.
         without_noise=True uses `bound_without_noise`, which noisy sensors also have."""

@@ -35,11 +35,5 @@ TEST(Png, IsLosslessForEveryFormat) {
     }
 }
 
-TEST(Png, ColoursAreTheSecondNumberOfAPixel) {
-  const std::vector<double> reading{1.5, 0x123456, 0, 0, 1, 2.5, 0xFF00FE,  1, 0, 0,
-                                    3.5, NAN,      0, 0, 1, 4.5, 0x1000000, 0, 0, 1};
-  EXPECT_EQ(color_bytes(reading, 5), (std::vector<std::uint8_t>{0x12, 0x34, 0x56, 0xFF, 0x00, 0xFE, 0, 0, 0, 0, 0, 0}));
-}
-
 }  // namespace
 }  // namespace sf::base

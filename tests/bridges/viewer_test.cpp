@@ -393,7 +393,7 @@ TEST(SceneJson, CamerasHaveTheirLensAndOpticalFrame) {
   record::RunInfo info = ViewerFixture::run_info_of(world);
   info.sensor_types = {{45, "camera", "pixels", {}, false}};
   record::SensorInfo sensor{45, "eye", "/left/camera", {1, 2, 0.5, M_PI / 2}};
-  record::StandardTopic image{.message = record::StandardTopic::Message::color_png, .topic = "/left/image"};
+  record::StandardTopic image{.message = record::StandardTopic::Message::color_file, .topic = "/left/image"};
   image.X_SE = {0, 0, 0, M_PI / 2};
   image.range_max = 20, image.columns = 64, image.rows = 48;
   image.lens = {{50, 51}, {31.5, 23.5}, {0.1}};

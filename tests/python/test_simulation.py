@@ -400,7 +400,7 @@ class Cameras(unittest.TestCase):
         self.assertTrue(numpy.shares_memory(labels, sim.hits("camera")), "a view")
         self.assertEqual((labels.shape, labels[0, 0, 639]), ((1, 480, 640), sensorfarm.NONE))
         self.assertTrue(((labels == sensorfarm.NONE) == (depths == 60.0)).all())
-        with self.assertRaisesRegex(sensorfarm.Error, "expected one of depth, labels, colour, normals"):
+        with self.assertRaisesRegex(sensorfarm.Error, "expected one of depth, labels, colour, normals, mono"):
             sim.images("heat")
 
     def test_images_of_different_sizes(self):

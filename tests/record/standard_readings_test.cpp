@@ -10,7 +10,8 @@
 #include <cstring>
 #include <limits>
 
-#include "base/png.h"
+#include "base/camera_pixels.h"
+#include "base/jpeg.h"
 #include "record/cdr.h"
 #include "record/ros_messages.h"
 #include "tests/base/decoded_png.h"
@@ -298,6 +299,7 @@ StandardTopic camera(Message message) {
   return topic;
 }
 const std::vector<double> kPixels{2.0, 0x102030, 8.0, 0, -HUGE_VAL, 1, 7.5, 2, 0.5, 3, 1.0, 0xFFFEFD};
+const std::vector<double> kGreyPixels{2, 0x202020, 8, 0x909090, 1, 0, 7, 0x010101, 1, 0xFEFEFE, 1, 0xFFFFFF};
 
 /// An image up to its data.
 void expect_image(CdrReader& cdr, const char* encoding, std::uint32_t bytes) {
@@ -325,15 +327,27 @@ TEST(StandardReadings, ColourImages) {
   EXPECT_TRUE(message.cdr.good());
 }
 
+TEST(StandardReadings, GreyImages) {
+  StandardTopic grey = camera(Message::color_image);
+  grey.mono = true;
+  Encoded message = of(grey, kGreyPixels);
+  expect_image(message.cdr, "mono8", 1);
+  for (const int byte : {0x20, 0x90, 0, 1, 0xFE, 0xFF}) EXPECT_EQ(message.cdr.get<std::uint8_t>(), byte);
+  EXPECT_TRUE(message.cdr.good());
+}
+
 /// The file of a CompressedImage.
-base::DecodedPng file_of(CdrReader& cdr, const char* format, std::size_t header) {
+std::string bytes_of(CdrReader& cdr, const char* format, std::size_t header) {
   EXPECT_EQ(cdr.get_string(), format);
   std::string bytes(cdr.get_count(1), '\0');
   for (char& byte : bytes) byte = static_cast<char>(cdr.get<std::uint8_t>());
   EXPECT_TRUE(cdr.good());
   EXPECT_EQ(cdr.left(), 0u);
   EXPECT_EQ(bytes.substr(0, header), std::string(header, '\0'));
-  base::DecodedPng png = base::decode_png(std::string_view(bytes).substr(header));
+  return bytes.substr(header);
+}
+base::DecodedPng file_of(CdrReader& cdr, const char* format, std::size_t header) {
+  base::DecodedPng png = base::decode_png(bytes_of(cdr, format, header));
   EXPECT_EQ(png.header.width, 3u);
   EXPECT_EQ(png.header.height, 2u);
   return png;
@@ -341,7 +355,7 @@ base::DecodedPng file_of(CdrReader& cdr, const char* format, std::size_t header)
 
 /// As image_transport's plug-ins `compressed` and `compressedDepth` publish them.
 TEST(StandardReadings, CompressedImages) {
-  Encoded color = of(camera(Message::color_png), kPixels);
+  Encoded color = of(camera(Message::color_file), kPixels);
   EXPECT_EQ(file_of(color.cdr, "rgb8; png compressed bgr8", 0).pixels, base::color_bytes(kPixels, 2));
   StandardTopic far = camera(Message::depth_png);
   far.range_max = 100.0;
@@ -355,6 +369,22 @@ TEST(StandardReadings, CompressedImages) {
   ASSERT_EQ(png.pixels.size(), 12u);
   std::memcpy(millimetres.data(), png.pixels.data(), 12);
   EXPECT_EQ(millimetres, (std::vector<std::uint16_t>{500, 501, 65535, 0, 0, 0})) << "too far, too near, no surface";
+}
+
+/// The names of ROS 2's plug-in, by colours and file.
+TEST(StandardReadings, CompressedImagesNameTheirFiles) {
+  StandardTopic topic = camera(Message::color_file);
+  topic.jpeg = 90;
+  Encoded color = of(topic, kPixels);
+  EXPECT_EQ(bytes_of(color.cdr, "rgb8; jpeg compressed bgr8", 0),
+            base::encode_jpeg(base::color_bytes(kPixels, 2), 3, 2, 90));
+  topic.mono = true;
+  Encoded grey = of(topic, kGreyPixels);
+  EXPECT_EQ(bytes_of(grey.cdr, "mono8; jpeg compressed mono8", 0),
+            base::encode_jpeg(base::image_bytes(kGreyPixels, 2, true), 3, 2, 90));
+  topic.jpeg = 0;
+  Encoded lossless = of(topic, kGreyPixels);
+  EXPECT_EQ(file_of(lossless.cdr, "mono8; png compressed mono8", 0).pixels, base::image_bytes(kGreyPixels, 2, true));
 }
 
 /// The coefficients that each model has, K, and P, which is K without rectification.

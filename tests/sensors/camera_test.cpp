@@ -11,8 +11,9 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <random>
+#include <set>
 
-#include "base/png.h"
+#include "base/srgb.h"
 #include "raycast/casters.h"
 #include "robots/kinematics.h"
 #include "scene/rasterizer.h"
@@ -282,7 +283,7 @@ TEST(Camera, NoiseAndVignetting) {
   const auto light_of = [](const std::string& keys, bool noise, std::uint32_t reading) {
     const world::World world = world_of(
         "sunlight 0 skylight 0.4 floor_color \"white\"\n"
-        "position( size [0.4 0.4 0.5] camera( resolution [101 101] fov 30 rgb 1 pose6 [0 0 0.3 0 90 0] " +
+        "position( size [0.4 0.4 0.5] camera( resolution [101 101] fov 30 pose6 [0 0 0.3 0 90 0] " +
         keys + " ) )");
     farm::Farm farm(world, host_device(), {.noise = noise, .threads = 1});
     farm.subscribe(0, base::only(sensors::kCamera));
@@ -292,26 +293,46 @@ TEST(Camera, NoiseAndVignetting) {
       for (const base::ReadingBlock& r : farm.tick(state.time, std::span(&state, 1))) {
         light.clear();
         for (std::size_t i = 1; i < r.values.size(); i += 2)
-          light.push_back(linear(static_cast<int>(r.values[i]) >> 8 & 255));
+          light.push_back(linear(static_cast<int>(r.values[i]) >> 16 & 255));
       }
     return light;
   };
-  const auto even = light_of("", true, 0);
+  const auto even = light_of("rgb 1", true, 0);
   EXPECT_NEAR(even[0], 0.4, 0.004);
   EXPECT_EQ(std::ranges::count(even, even[0]), 101 * 101);
-  const auto dim = light_of("gain 0.5 vignetting 0.3", true, 0);
+  const auto dim = light_of("rgb 1 gain 0.5 vignetting 0.3", true, 0);
   EXPECT_NEAR(dim[50 * 101 + 50], 0.2, 0.003);
   EXPECT_NEAR(dim[0], 0.2 * 0.7, 0.003);
   EXPECT_NEAR(dim[50 * 101], 0.2 * 0.85, 0.003) << "half of the square of the radius";
-  const auto noisy = light_of("noise [0.02 0.001]", true, 1);
+  const auto noisy = light_of("rgb 1 noise [0.02 0.001]", true, 1);
   double sum = 0.0, squares = 0.0;
   for (const double x : noisy) sum += x, squares += x * x;
   const double n = 101 * 101, mean = sum / n, variance = squares / n - mean * mean;
   EXPECT_NEAR(mean, 0.4, 5 * 0.03 / 101);
   EXPECT_NEAR(variance, 0.0004 + 0.0004, 0.0008 * 5 * std::sqrt(2 / n)) << "0.02^2 + 0.001 x 0.4; steps add 1 %";
-  EXPECT_NE(noisy, light_of("noise [0.02 0.001]", true, 0)) << "of each reading";
-  EXPECT_EQ(noisy, light_of("noise [0.02 0.001]", true, 1));
-  EXPECT_EQ(light_of("noise [0.02 0.001]", false, 0), even);
+  EXPECT_EQ(light_of("mono 1 noise [0.02 0.001]", true, 1), noisy) << "of the luminance as of a channel";
+  EXPECT_NE(noisy, light_of("rgb 1 noise [0.02 0.001]", true, 0)) << "of each reading";
+  EXPECT_EQ(noisy, light_of("rgb 1 noise [0.02 0.001]", true, 1));
+  EXPECT_EQ(light_of("rgb 1 noise [0.02 0.001]", false, 0), even);
+}
+
+/// Luminance of linear light, of one sample and of several; noise has one number per pixel.
+TEST(Camera, GreyIsTheLuminance) {
+  const std::string keys = "resolution [40 30] fov 80 range [0 50] ";
+  for (const char* const more : {"", " samples 4 gain 1.2"}) {
+    const Image color = shoot(boards(keys + "rgb 1" + more)), grey = shoot(boards(keys + "mono 1" + more));
+    std::set<double> shades;
+    for (std::size_t i = 0; i < color.values.size(); i += 2) {
+      ASSERT_EQ(grey.values[i], color.values[i]) << "depths";
+      const auto rgb = static_cast<std::uint32_t>(color.values[i + 1]),
+                 y = static_cast<std::uint32_t>(grey.values[i + 1]);
+      const float light = glm::dot(glm::vec3(0.2126f, 0.7152f, 0.0722f), base::linear_color(rgb));
+      ASSERT_NEAR(y & 255, base::srgb_color(glm::vec3(light)) & 255, 1) << "rounded twice";
+      ASSERT_EQ(y, (y & 255) * 0x010101);
+      shades.insert(y);
+    }
+    EXPECT_GT(shades.size(), 3u) << "sky, floor, board and wall";
+  }
 }
 
 /// Each row of a rolling image is cast from the pose at its time, and the samples of an exposure from those before it.
@@ -399,34 +420,41 @@ TEST(Camera, Packets) {
 TEST(Camera, ImageFilesInParts) {
   const sensors::SensorSpec any{.elements = 0};
   for (const auto& [size, parts] : {std::pair{1u, 1u}, {1240u, 1u}, {1241u, 2u}, {4'000'000u, 3226u}}) {
-    std::string file(size, '\0'), received;
-    for (std::size_t i = 0; i < size; ++i) file[i] = static_cast<char>(i * 7 >> 3);
+    const std::uint16_t form = size % 2 == 0 ? sensors::kPngForm : sensors::kJpegForm;
+    sensors::ImageFile file{std::string(size, '\0'), form};
+    std::string received;
+    for (std::size_t i = 0; i < size; ++i) file.bytes[i] = static_cast<char>(i * 7 >> 3);
     ASSERT_EQ(sensors::image_parts(size), parts);
     for (std::uint32_t part = 0; part < parts; ++part) {
       base::Bytes bytes;
       const std::uint8_t id = sensors::encode_image(file, part, bytes);
-      ASSERT_EQ(sensors::camera_form(id, bytes), sensors::kImageForm);
+      ASSERT_EQ(sensors::camera_form(id, bytes), form);
       sensors::ImagePart image;
       ASSERT_EQ(sensors::read_image(bytes, image), sensors::PayloadError::none);
+      ASSERT_EQ(image.form, form);
       ASSERT_EQ(image.first, received.size());
       received.append(image.bytes.begin(), image.bytes.end());
       const sensors::PayloadPart judged = sensors::camera_type.decode(any, bytes, id, sensors::WireFormat::farm);
       ASSERT_EQ(judged.fault, sensors::PayloadError::none);
       ASSERT_EQ(judged.parts, 0u) << "none of the reading's";
     }
-    EXPECT_EQ(received, file);
+    EXPECT_EQ(received, file.bytes);
   }
 }
 
 TEST(Camera, ColoursAsFile) {
-  for (const char* const colours : {"", "rgb 1", "rgb 1 normals 1"}) {
+  for (const char* const colours : {"", "rgb 1", "rgb 1 normals 1", "mono 1", "rgb 1 jpeg 90", "mono 1 jpeg 1"}) {
     const world::World world = boards("resolution [40 30] range [0 50] " + std::string(colours));
     const Image image = shoot(world);
     const base::ReadingBlock block{.type = sensors::kCamera, .values = image.values};
-    const std::string file = sensors::image_file(sensors::SensorSet(world), block);
-    EXPECT_EQ(file.empty(), *colours == '\0');
-    if (file.empty()) continue;
-    EXPECT_EQ(base::decode_png(file).pixels, base::color_bytes(image.values, image.values.size() / 1200));
+    const sensors::SensorSet set(world);
+    const sensors::ImageFile file = sensors::image_file(set, block);
+    EXPECT_EQ(file.bytes.empty(), *colours == '\0');
+    if (file.bytes.empty()) continue;
+    const sensors::CameraSettings& camera = set.settings_of<sensors::CameraSettings>(sensors::kCamera)[0];
+    EXPECT_EQ(file.bytes, base::color_file(image.values, camera.columns(), camera.format())) << colours;
+    EXPECT_EQ(file.form, camera.jpeg > 0 ? sensors::kJpegForm : sensors::kPngForm);
+    EXPECT_EQ(file.bytes.substr(1, 2), camera.jpeg > 0 ? "\xD8\xFF" : "PN");
   }
 }
 
@@ -450,7 +478,10 @@ TEST(Camera, ImpossibleSettingsAreRefused) {
   expect_in("a focal length of 0.5 px; expected 1 to", refused("focal 0.5 fisheye [0 0 0 0]"));
   expect_in("depths from 5 to 5 m", refused("range [5 5]"));
   expect_in("expected 'rolling 1' with it", refused("scan_time 0.1"));
-  expect_in("'samples' changes colours; expected 'rgb 1'", refused("samples 4"));
+  expect_in("'samples' changes colours; expected 'rgb 1' or 'mono 1'", refused("samples 4"));
+  expect_in("'jpeg' changes colours; expected 'rgb 1' or 'mono 1'", refused("jpeg 90"));
+  expect_in("trial.world:2: 'rgb' and 'mono'; expected one of them", refused("rgb 1 mono 1"));
+  expect_in("'jpeg'", refused("rgb 1 jpeg 101"));
   expect_in("expected 'samples' of 2 or more", refused("rgb 1 exposure 0.01"));
   expect_in("19200 different times; expected at most 10000",
             refused("rgb 1 samples 64 exposure 0.01 rolling 1 resolution [4 300]"));

@@ -89,11 +89,11 @@ base::Bytes encoded(const netio::Packet& packet, const netio::Reading& reading) 
   Decoded decoded;
   const auto type = static_cast<std::uint8_t>(packet.header.type);
   base::Bytes payload, bytes;
-  if (sensors::camera_form(type, reading.payload) == sensors::kImageForm) {
+  if (sensors::camera_form(type, reading.payload) >= sensors::kPngForm) {
     sensors::ImagePart image;
     EXPECT_EQ(sensors::read_image(reading.payload, image), sensors::PayloadError::none);
-    std::string file(image.total, '\0');
-    std::ranges::copy(image.bytes, file.begin() + image.first);
+    sensors::ImageFile file{std::string(image.total, '\0'), image.form};
+    std::ranges::copy(image.bytes, file.bytes.begin() + image.first);
     sensors::encode_image(file, image.part, payload);
     netio::encode_reading(packet.header, type, payload, bytes);
     return bytes;

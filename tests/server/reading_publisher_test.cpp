@@ -208,7 +208,7 @@ TEST(ReadingPublisher, ColoursAreSentAsAFile) {
   publisher.flush();
 
   netio::ReceiveBatch sent(8), copied(8);
-  const std::string file = sensors::image_file(sensor_set, block);
+  const std::string file = sensors::image_file(sensor_set, block).bytes;
   const std::size_t datagrams = 2 + sensors::image_parts(file.size());
   ASSERT_EQ(datagrams, 4u) << file.size() << " bytes of random colours";
   ASSERT_EQ(sent.fill(receiver), datagrams);
