@@ -8,6 +8,12 @@
 
 namespace sf::base {
 
+/// Speeds of the rims of a mover's left and right wheels on average since the last tick, forward positive.
+struct WheelSpeeds {
+  float left = NAN, right = NAN;  ///< [m/s] NaN: not known; the wheels roll with the ground
+  bool are_known() const { return !std::isnan(left); }
+};
+
 /// State of one mover at one time.
 struct Report {
   std::uint32_t mover = 0;         ///< row in `world::World::movers`
@@ -16,6 +22,7 @@ struct Report {
   Twist velocity;                  ///< in the mover's frame; zero if unknown
   Tilt tilt;                       ///< of the mover, for its spatial sensors; finite
   std::uint32_t contact_mask = 0;  ///< bit k: the body is touched in sector k, see kContactSectors
+  WheelSpeeds wheels;              ///< of simulated cars, for their encoders
 };
 
 /// Pose of an absent mover, which no sensor detects. Never reported from outside.

@@ -22,6 +22,8 @@ void get_twist(CdrReader& cdr, base::Twist& twist) {
 
 bool is_tilted(const base::Report& report) { return !base::is_level(report.tilt) && !base::is_absent(report.X_WM); }
 
+bool has_wheels(const base::Report& report) { return report.wheels.are_known() && !base::is_absent(report.X_WM); }
+
 }  // namespace
 
 bool any_tilted(const base::TickRecord& record) { return std::ranges::any_of(record.reports, is_tilted); }
@@ -51,6 +53,33 @@ bool decode_tilts(std::span<const std::uint8_t> message, TiltsSample& sample) {
     each.mover = cdr.get<std::uint32_t>();
     for (double* value : {&each.tilt.roll, &each.tilt.pitch}) *value = cdr.get<double>();
     finite = finite && std::isfinite(each.tilt.roll + each.tilt.pitch);
+  }
+  return cdr.good() && finite;
+}
+
+bool any_wheels(const base::TickRecord& record) { return std::ranges::any_of(record.reports, has_wheels); }
+
+void encode_wheels(const base::TickRecord& record, base::Bytes& out) {
+  CdrWriter cdr(out);
+  put_header(cdr, record.time, "world");
+  cdr.put_count(static_cast<std::size_t>(std::ranges::count_if(record.reports, has_wheels)));
+  for (const base::Report& report : record.reports) {
+    if (!has_wheels(report)) continue;
+    cdr.put(report.mover);
+    for (const float speed : {report.wheels.left, report.wheels.right}) cdr.put(speed);
+  }
+}
+
+bool decode_wheels(std::span<const std::uint8_t> message, WheelsSample& sample) {
+  constexpr std::size_t kLeastWheels = 12;  // [byte]
+  CdrReader cdr(message);
+  get_header(cdr, sample.time);
+  sample.wheels.resize(cdr.get_count(kLeastWheels));
+  bool finite = true;
+  for (MoverWheels& each : sample.wheels) {
+    each.mover = cdr.get<std::uint32_t>();
+    for (float* speed : {&each.wheels.left, &each.wheels.right}) *speed = cdr.get<float>();
+    finite = finite && std::isfinite(each.wheels.left + each.wheels.right);
   }
   return cdr.good() && finite;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // State, command and contact of all movers at one tick, bit for bit: `sensorfarm_msgs/msg/Fleet`, and, where some are
-// not level, their tilts: `sensorfarm_msgs/msg/Tilts`.
+// not level, their tilts: `sensorfarm_msgs/msg/Tilts`, and the speeds of the wheels of cars:
+// `sensorfarm_msgs/msg/Wheels`.
 
 #include <cstdint>
 #include <span>
@@ -39,6 +40,17 @@ struct TiltsSample {
   std::vector<MoverTilt> tilts;
 };
 
+struct MoverWheels {
+  std::uint32_t mover = 0;
+  base::WheelSpeeds wheels;  ///< finite
+};
+
+/// The known speeds of wheels at one tick.
+struct WheelsSample {
+  std::int64_t time = 0;  ///< [ns] simulated
+  std::vector<MoverWheels> wheels;
+};
+
 /// Returns whether a mover that is in the world is not level.
 bool any_tilted(const base::TickRecord& record);
 /// Appends the tilted movers that are in the world as a sequence of `sensorfarm_msgs/Tilt`.
@@ -47,6 +59,13 @@ void put_tilts(CdrWriter& cdr, const base::TickRecord& record);
 void encode_tilts(const base::TickRecord& record, base::Bytes& out);
 /// @return false if the bytes are not a Tilts message. Replaces the content of `sample`.
 bool decode_tilts(std::span<const std::uint8_t> message, TiltsSample& sample);
+
+/// Returns whether the speeds of the wheels of a mover in the world are known.
+bool any_wheels(const base::TickRecord& record);
+/// Appends one message, of these movers.
+void encode_wheels(const base::TickRecord& record, base::Bytes& out);
+/// @return false if the bytes are not a Wheels message. Replaces the content of `sample`.
+bool decode_wheels(std::span<const std::uint8_t> message, WheelsSample& sample);
 
 /// Appends one message. @pre `commands` and `contacts` are empty or contain one entry per report
 void encode_fleet(const base::TickRecord& record, base::Bytes& out);

@@ -123,9 +123,10 @@ Recorder::~Recorder() {
 void Recorder::write(const base::TickRecord& record) {
   SF_CHECK(!finished_, "tick " + std::to_string(record.tick) + " after the end of the recording");
   time_ = record.time;
-  const bool whole = wanted_.empty(), shapes = whole && !record.shapes.empty(), tilts = whole && any_tilted(record);
-  const bool new_shapes = shapes && messages_->add_shapes(), new_tilts = tilts && messages_->add_tilts();
-  const bool new_topic = new_shapes || new_tilts;
+  const bool whole = wanted_.empty();
+  bool new_topic = whole && !record.shapes.empty() && messages_->add_shapes();
+  new_topic |= whole && any_tilted(record) && messages_->add_tilts();
+  new_topic |= whole && any_wheels(record) && messages_->add_wheels();
   const bool threaded = new_topic && stop_writer();
   if (new_topic) add_channels();
   messages_->encode(
@@ -187,6 +188,7 @@ void Recorder::add_movers(RunInfo info) {
   messages_.emplace(info_);
   if (before.has_shapes()) messages_->add_shapes();
   if (before.has_tilts()) messages_->add_tilts();
+  if (before.has_wheels()) messages_->add_wheels();
   const bool threaded = stop_writer();
   for (std::size_t i = known; i < info_.joined.size(); ++i)
     mcap_.add_metadata({kJoinedMetadata, pairs_of(info_.joined[i])});

@@ -93,6 +93,18 @@ bool read_tilts(const McapMessage& message, Recording& recording) {
   return true;
 }
 
+/// The same for the speeds of wheels.
+bool read_wheels(const McapMessage& message, Recording& recording) {
+  WheelsSample sample;
+  if (!decode_wheels(message.data, sample)) return false;
+  for (const MoverWheels& each : sample.wheels) {
+    if (each.mover >= recording.states.size()) return false;
+    auto& states = recording.states[each.mover];
+    if (!states.empty() && states.back().time == sample.time) states.back().wheels = each.wheels;
+  }
+  return true;
+}
+
 /// Beams without a return are infinite in messages; in the run they may have been `range_max`.
 bool read_scan(const McapMessage& message, const SensorTopic& topic, const RunInfo& info, ReadingSample& sample) {
   const std::optional<Scan> scan = decode_scan(message.data);
@@ -121,6 +133,7 @@ bool read_message(const McapMessage& message, std::string_view type, const std::
                   FleetState& fleet, Recording& recording) {
   if (type == kFleet) return read_fleet(message, fleet, recording);
   if (type == kTilts) return read_tilts(message, recording);
+  if (type == kWheels) return read_wheels(message, recording);
   if (type == kLights) {
     LightsSample& sample = recording.lights.emplace_back();
     const bool good = decode_lights(message.data, sample.time, sample.lights);

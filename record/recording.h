@@ -23,10 +23,11 @@ struct StateSample {
   base::Twist velocity;
   base::Twist command;
   base::Tilt tilt;
+  base::WheelSpeeds wheels;
 };
 
 inline base::Report report_of(const StateSample& state, std::uint32_t mover) {
-  return {mover, state.time, state.X_WM, state.velocity, state.tilt};
+  return {mover, state.time, state.X_WM, state.velocity, state.tilt, 0, state.wheels};
 }
 
 /// One recorded reading.

@@ -103,6 +103,8 @@ constexpr std::array kDefinitions = {
     Definition{"sensorfarm_msgs/Fleet", "std_msgs/Header header\nuint64 tick\nsensorfarm_msgs/State[] states\n"},
     Definition{"sensorfarm_msgs/Tilt", "uint32 mover\nfloat64 roll\nfloat64 pitch\n"},
     Definition{"sensorfarm_msgs/Tilts", "std_msgs/Header header\nsensorfarm_msgs/Tilt[] tilts\n"},
+    Definition{"sensorfarm_msgs/MoverWheels", "uint32 mover\nfloat32 left\nfloat32 right\n"},
+    Definition{"sensorfarm_msgs/Wheels", "std_msgs/Header header\nsensorfarm_msgs/MoverWheels[] wheels\n"},
     Definition{"sensorfarm_msgs/Cloud",
                "uint32 mover\nuint8 type\nuint32 sensor\nbool planar\nfloat32[3] position\nfloat32[] points\n"},
     Definition{"sensorfarm_msgs/Clouds",

@@ -28,6 +28,7 @@ inline constexpr std::string_view kLights = "sensorfarm_msgs/msg/Lights";
 inline constexpr std::string_view kFaults = "sensorfarm_msgs/msg/Faults";
 inline constexpr std::string_view kShapes = "sensorfarm_msgs/msg/Shapes";
 inline constexpr std::string_view kTilts = "sensorfarm_msgs/msg/Tilts";
+inline constexpr std::string_view kWheels = "sensorfarm_msgs/msg/Wheels";
 inline constexpr std::string_view kClouds = "sensorfarm_msgs/msg/Clouds";
 inline constexpr std::string_view kSolids = "sensorfarm_msgs/msg/Solids";
 inline constexpr std::string_view kIntents = "sensorfarm_msgs/msg/Intents";

@@ -78,6 +78,12 @@ bool TickMessages::add_tilts() {
   return true;
 }
 
+bool TickMessages::add_wheels() {
+  if (wheels_ != 0) return false;
+  wheels_ = add("/wheels", kWheels);
+  return true;
+}
+
 bool TickMessages::add_shapes() {
   if (shapes_ != 0) return false;
   shapes_ = add("/shapes", kShapes);
@@ -136,7 +142,7 @@ void TickMessages::add_readings(std::size_t row) {
 std::vector<bool> TickMessages::readings_and_clock() const {
   std::vector<bool> wanted(topics_.size());
   for (std::size_t topic = first_reading_; topic < wanted.size(); ++topic)
-    wanted[topic] = topic != shapes_ && topic != tilts_;
+    wanted[topic] = topic != shapes_ && topic != tilts_ && topic != wheels_;
   wanted[kClockRow] = true;
   return wanted;
 }
@@ -202,6 +208,8 @@ void TickMessages::encode(const base::TickRecord& record, const Emit& emit, cons
   out.send(kFleetRow, ticks_, record.time, [&](base::Bytes& bytes) { encode_fleet(record, bytes); });
   if (tilts_ != 0 && any_tilted(record))
     out.send(tilts_, ticks_, record.time, [&](base::Bytes& bytes) { encode_tilts(record, bytes); });
+  if (wheels_ != 0 && any_wheels(record))
+    out.send(wheels_, ticks_, record.time, [&](base::Bytes& bytes) { encode_wheels(record, bytes); });
   send_transforms(out);
   out.send(kClockRow, ticks_, record.time, [&](base::Bytes& bytes) { encode_clock(record.time, bytes); });
   if (!record.lights.empty())

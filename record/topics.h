@@ -60,6 +60,9 @@ class TickMessages {
   /// @return whether it is new
   bool add_tilts();
   bool has_tilts() const { return tilts_ != 0; }
+  /// The same for the speeds of wheels.
+  bool add_wheels();
+  bool has_wheels() const { return wheels_ != 0; }
 
   /// Emits the latched topics. The next tick is the first of a run: its time may be earlier than that of the last one.
   void begin(const Emit& emit);
@@ -128,6 +131,7 @@ class TickMessages {
   std::uint32_t ticks_ = 0, odometries_ = 0;
   std::uint32_t shapes_ = 0;    ///< row of /shapes; 0: there is none
   std::uint32_t tilts_ = 0;     ///< row of /tilts; 0: there is none
+  std::uint32_t wheels_ = 0;    ///< row of /wheels; 0: there is none
   std::uint32_t faults_ = 0;    ///< row of /faults; 0: the run has no faults
   bool marks_too_near_ = true;  ///< ranges of surfaces that are too near are -infinity
   std::vector<double> marked_;  ///< values of one reading

@@ -53,12 +53,13 @@ void Fleet::place_body(std::uint32_t row) {
   const base::Pose &end = body.end.X_WM, before = report.X_WM;
   report.tilt = body.end.tilt;
   if (refused_[row] == 0) {
-    report.X_WM = end, report.velocity = body.end.velocity;
+    report.X_WM = end, report.velocity = body.end.velocity, report.wheels = body.end.wheels;
   } else {
     const auto ground = [&](const base::Pose& at) {
       return ground_.height({at.x, at.y}, end.z + world::Ground::kMostStep);
     };
     report.X_WM.z = end.z + (ground(before) - ground(end));
+    report.wheels = {};  // they stop with the car
     body.dynamics->stop(report, body.state);
   }
   moved_[row] = 1;

@@ -77,7 +77,7 @@ base::Report extrapolate(const base::Report& known, std::int64_t time) {
 
 base::Report interpolate(const base::Report& before, const base::Report& after, std::int64_t time) {
   base::Report report = before;
-  report.time = time;
+  report.time = time, report.wheels = after.wheels;
   // Bitwise equal poses allow readings of a mover at rest to be reused.
   if (is_at_rest(before, after)) {
     report.velocity = after.velocity;

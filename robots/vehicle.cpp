@@ -87,15 +87,32 @@ base::Report Vehicle::move(const base::Report& from, const base::Twist& command,
   VehicleBody body = body_at(from);
   body.v = before.v, body.w = before.w, body.spin = before.spin, body.hold = before.hold, body.steer = before.steer;
   Goal goal{before.forward, before.turn};
+  glm::dvec2 rolled{};
   for (double k = 0.0; k < steps; k += 1.0) {
     approach(goal, command, dt);
     step(body, controls_for(body, goal), dt, ground);
+    rolled += dt * rims_of(body);
   }
   State{body.v, body.w, body.spin, body.hold, body.steer, goal.forward, goal.turn}.write(state);
   const base::Report after = report_of(body);
   base::Report report = from;
   report.X_WM = after.X_WM, report.tilt = after.tilt, report.velocity = after.velocity;
+  report.wheels = {static_cast<float>(rolled.x / seconds), static_cast<float>(rolled.y / seconds)};
   return report;
+}
+
+// A rolling wheel's part along the axis is the way of the axle, however it is steered.
+glm::dvec2 Vehicle::rims_of(const VehicleBody& body) const {
+  const base::SinCos steer = base::sin_cos(body.steer);
+  glm::dvec2 sum{};
+  int axles = 0;
+  for (const std::size_t left : {kFrontLeft, kRearLeft}) {
+    if (rest_[left].drive == 0.0 && !model_.skid) continue;
+    ++axles;
+    for (const std::size_t side : {0u, 1u})
+      sum[static_cast<int>(side)] += body.spin[left + side] * heading_of(left + side, steer).x;
+  }
+  return model_.car.wheel_radius / axles * sum;
 }
 
 VehicleBody Vehicle::body_at(const base::Report& at) const {

@@ -96,6 +96,8 @@ class Vehicle final : public Dynamics {
   base::Report report_of(const VehicleBody& body) const;
   /// Advances by one step of `dt` [s], in (0, kVehicleStep].
   void step(VehicleBody& body, const VehicleControls& controls, double dt, const world::Ground& ground) const;
+  /// Returns the speeds of the driven wheels' rims, along the car's axis, on average of a side.
+  glm::dvec2 rims_of(const VehicleBody& body) const;
   /// Returns the kinetic, potential and spring energy [J].
   double energy(const VehicleBody& body, const world::Ground& ground) const;
   /// Returns the load [N] that the ground bears below a wheel.

@@ -46,6 +46,7 @@ class Encoders : public HostBackend {
     const SensorSpec& spec = rows()[row];
     return {settings_[row], episodes().key(base::RandomStream::slip, spec.mover, spec.sensor), noise_};
   }
+  Wheels& counting(std::size_t row) { return (between_ ? ahead_ : wheels_)[row]; }
   bool drove(const Track& track, const Pose& X_WM, double max_forward, std::int64_t now) const;
 
   const std::vector<Encoder>& settings_;  ///< per row
@@ -86,16 +87,23 @@ void Encoders::accumulate(std::int64_t now, bool between) {
   if (between) ahead_ = wheels_;
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     const std::uint32_t mover = rows()[i].mover;
-    const Pose& X_WM = states()[mover].X_WM;
+    const base::Report& state = states()[mover];
+    const Pose& X_WM = state.X_WM;
     Track& track = tracks_[i];
     // Only for a state of this tick: a mover that was at rest or absent and is now elsewhere was relocated. Older
     // states may be late.
-    const bool fresh = states()[mover].time == now;
+    const bool fresh = state.time == now;
     if (base::is_absent(X_WM)) {
       if (!between) track.away = true;
       continue;
     }
     if (track.away && fresh) {
+      if (!between) track = {X_WM, now, true};
+      continue;
+    }
+    if (fresh && state.wheels.are_known()) {
+      const double seconds = 1e-9 * static_cast<double>(now - track.since);
+      counting(i).add({seconds * state.wheels.left, seconds * state.wheels.right});
       if (!between) track = {X_WM, now, true};
       continue;
     }
@@ -105,8 +113,8 @@ void Encoders::accumulate(std::int64_t now, bool between) {
     }
     if (drove(track, X_WM, world().movers[mover].max_forward, now)) {
       // Level robots that change their height do not drive up.
-      const double rise = base::is_level(states()[mover].tilt) ? 0.0 : X_WM.z - track.X_WM.z;
-      (between ? ahead_ : wheels_)[i].roll(track.X_WM, X_WM, world().variation_of(mover).slip, rise);
+      const double rise = base::is_level(state.tilt) ? 0.0 : X_WM.z - track.X_WM.z;
+      counting(i).roll(track.X_WM, X_WM, world().variation_of(mover).slip, rise);
     }
     if (!between) track = {X_WM, now, true};
   }
@@ -162,7 +170,10 @@ void Wheels::roll(const base::Pose& before, const base::Pose& after, double slip
   const auto slipping = [&](double way, double ratio) {
     return way / (1.0 - std::clamp(ratio + settings.slope_slip * climb, -world::kMostSlip, world::kMostSlip));
   };
-  step = {slipping(step.left, settings.slip_ratio_left), slipping(step.right, settings.slip_ratio_right)};
+  add({slipping(step.left, settings.slip_ratio_left), slipping(step.right, settings.slip_ratio_right)});
+}
+
+void Wheels::add(const Rolled& step) {
   rolled.left += step.left;
   rolled.right += step.right;
   left.advance(std::abs(step.left));
@@ -178,6 +189,9 @@ Rolled Wheels::counts() const {
 
 Encoder read_encoder(const world::Sensor& sensor, const world::Mover& mover) {
   Encoder e;
+  for (const char* key : {"slip_ratio", "slope_slip"})
+    if (mover.dynamics.name == "car" && find(sensor, key) != nullptr)
+      refuse(sensor, key, fmt::format("the tyres of 'dynamics \"car\"' compute their slip; leave '{}' out", key));
   e.per_count = length(sensor, "per_count", e.per_count, 1e-7, 1e3);
   e.slip = number(sensor, "slip", 0.0, 0.0, 1.0);
   if (const auto scale = tuple(sensor, "scale", 2, "[left right]")) {

@@ -9,6 +9,9 @@
 // steering, else 1). `slip_ratio` [left right]: part of each wheel's way that the robot does not advance; `slope_slip`:
 // more of it per unit of slope, uphill.
 //
+// Cars with `dynamics "car"` report the rotation of their driven wheels, which is counted in place of the path: the
+// wheels spin and lock. They have no `slip_ratio` and no `slope_slip`.
+//
 // A reading is one row: distance rolled by the left and the right wheel since the start, in metres and in counts,
 // forward positive. A displacement of more than 0.5 m plus twice the distance possible at the robot's top speed is a
 // relocation and is not counted.
@@ -42,6 +45,8 @@ struct Wheels {
   /// Adds the motion between two poses. @param slip world::Variation::slip
   /// @param rise [m] height gained on a slope
   void roll(const base::Pose& before, const base::Pose& after, double slip = 0.0, double rise = 0.0);
+  /// Adds ways of the wheels [m].
+  void add(const Rolled& step);
   /// Returns the distances in counts, with scale, slip and rounding.
   Rolled counts() const;
   /// Returns the distances [m] that the counts state.

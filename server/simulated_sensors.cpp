@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/pose.h"
 
@@ -36,7 +37,12 @@ SimulatedSensors::SimulatedSensors(const world::World& world, const sensors::Sen
 
 void SimulatedSensors::measure(const base::Pose& before, const base::Report& after, std::int64_t now, OwnState& own) {
   if (wheels_) {
-    wheels_->roll(before, after.X_WM);
+    const std::int64_t since = std::exchange(measured_, now);
+    const double seconds = since < 0 ? 0.0 : 1e-9 * static_cast<double>(now - since);
+    if (after.wheels.are_known())
+      wheels_->add({seconds * after.wheels.left, seconds * after.wheels.right});
+    else
+      wheels_->roll(before, after.X_WM);
     own.add_wheels(now, wheels_->counted());
   }
   if (gyro_ && gyro_->schedule.is_due(now))

@@ -54,6 +54,7 @@ class SimulatedSensors {
   void measure_gps(const base::Pose& X_WM, std::int64_t now, OwnState& own);
 
   std::optional<sensors::Wheels> wheels_;
+  std::int64_t measured_ = -1;  ///< [ns] end of the last motion; -1: none
   std::optional<Gyro> gyro_;
   std::optional<Gps> gps_;
   std::deque<Fix> fixes_;  ///< measured, but not delivered yet

@@ -159,6 +159,29 @@ TEST(Messages, PosesOfTiltedRobotsHaveWholeQuaternions) {
       EXPECT_EQ(at<double>(*message, 36 + 8 * static_cast<std::size_t>(k)), value) << k;
 }
 
+/// Only those of movers in the world that are known are in the message.
+TEST(Messages, WheelsRoundTripBitwise) {
+  test::SampleTick tick(3, 3);
+  EXPECT_FALSE(any_wheels(tick.record));
+  tick.reports[1].wheels = {0.1f, -2.0f}, tick.reports[2].wheels = {3.0f, 4.0f};
+  tick.reports[2].X_WM = base::kAbsent;
+  tick.record.reports = tick.reports;
+  EXPECT_TRUE(any_wheels(tick.record));
+  Bytes out;
+  encode_wheels(tick.record, out);
+  WheelsSample sample;
+  ASSERT_TRUE(decode_wheels(out, sample));
+  EXPECT_EQ(sample.time, 300'000'000);
+  ASSERT_EQ(sample.wheels.size(), 1u);
+  EXPECT_EQ(sample.wheels[0].mover, 1u);
+  EXPECT_EQ(sample.wheels[0].wheels.left, 0.1f);
+  EXPECT_EQ(sample.wheels[0].wheels.right, -2.0f);
+  for (std::size_t size = 0; size < out.size(); ++size) EXPECT_FALSE(decode_wheels(std::span(out).first(size), sample));
+  tick.reports[1].wheels.right = NAN;
+  encode_wheels(tick.record, out = {});
+  EXPECT_FALSE(decode_wheels(out, sample)) << "encoders count finite ways";
+}
+
 /// Only movers in the world that are not level are in the message.
 TEST(Messages, TiltsRoundTripBitwise) {
   test::SampleTick tick(3, 4);

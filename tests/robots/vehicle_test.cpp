@@ -152,6 +152,52 @@ TEST(Vehicle, ThePioneerTurnsAboutAsCommanded) {
   EXPECT_NEAR(at.velocity.turn, 0.5, 0.1);
 }
 
+/// Ways [m] within some seconds, and the turn [rad].
+struct Ways {
+  double left = 0.0, right = 0.0, car = 0.0, turn = 0.0;
+};
+Ways ways_of(Drive& drive, const base::Twist& command, double seconds) {
+  Ways ways;
+  for (double t = 0.0; t < seconds - 1e-9; t += 0.1) {
+    const base::Pose before = drive.report.X_WM;
+    const base::Report& at = drive.go(command, 0.1);
+    ways.left += 0.1 * at.wheels.left, ways.right += 0.1 * at.wheels.right;
+    ways.car += 0.1 * at.velocity.forward, ways.turn += base::wrap_angle(at.X_WM.yaw - before.yaw);
+  }
+  return ways;
+}
+VehicleModel family_on_ice() {
+  VehicleModel model = family_model();
+  model.car.friction.c1 *= 0.1, model.car.friction.c3 *= 0.1;
+  return model;
+}
+
+/// Straight ahead and in a turn, of steered wheels and of others, with the slip of the drive.
+TEST(Vehicle, WheelsRollWithTheCar) {
+  for (const double share : {1.0, 0.0, 0.5})
+    for (const double turn : {0.0, 0.5}) {
+      VehicleModel model = family_model();
+      model.drive_share = share;
+      Drive drive(model, 4.0);
+      drive.go({4.0, 0.0, turn}, 4.0);
+      const Ways ways = ways_of(drive, {4.0, 0.0, turn}, 4.0);
+      EXPECT_NEAR(0.5 * (ways.left + ways.right) / ways.car, 1.0, 0.01) << share << ", " << turn;
+      EXPECT_NEAR((ways.right - ways.left) / kTrack, ways.turn, 0.02 * ways.turn + 1e-6) << share << ", " << turn;
+    }
+}
+
+TEST(Vehicle, WheelsSpinOnIceAndLock) {
+  Drive start(family_on_ice());
+  const Ways spinning = ways_of(start, {30.0}, 3.0);
+  EXPECT_GT(spinning.car, 0.5);
+  EXPECT_GT(spinning.left, 3.0 * spinning.car) << "full throttle";
+  Drive stop(family_on_ice(), 15.0);
+  stop.go({}, 1.0);
+  const Ways locked = ways_of(stop, {}, 2.0);
+  EXPECT_GT(locked.car, 15.0) << "it slides";
+  EXPECT_NEAR(locked.left, 0.0, 0.01) << "full brakes";
+}
+
 // --- Robots of a fleet
 
 world::Mover& add_car(world::World& world, const base::Pose& X_WM) {
@@ -171,6 +217,7 @@ TEST(DynamicFleet, AWallStopsACar) {
   EXPECT_NEAR(at.X_WM.x, 100.0 - 2.1, 0.01);
   EXPECT_EQ(at.velocity.forward, 0.0);
   EXPECT_NE(at.contact_mask, 0u);
+  EXPECT_FALSE(at.wheels.are_known()) << "they stop with the car";
   EXPECT_NEAR(at.X_WM.z, 0.0, 0.05);
   for (int tick = 0; tick < 30; ++tick) fleet.move(std::vector{base::Twist{-5.0}}, 100'000'000);
   EXPECT_LT(fleet.reports()[0].X_WM.x, 95.0) << "it drives away again";

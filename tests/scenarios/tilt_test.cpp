@@ -92,6 +92,40 @@ TEST(TiltedRobots, AreRecordedAndRecomputed) {
   }
   recorded({}, {}, file);
   EXPECT_EQ(file.find("ilts"), std::string::npos);
+  EXPECT_EQ(file.find("Wheels"), std::string::npos);
+}
+
+/// A car starts on ice: its encoders count wheels that spin, to the bit in a replay. Without their speeds, as in
+/// recordings of earlier versions, replays count the path.
+TEST(SpinningWheels, AreRecordedAndRecomputed) {
+  const auto folder = std::filesystem::temp_directory_path() / ("wheels_" + std::to_string(::getpid()));
+  const world::World world = trial::world_of(
+      "position( name \"car\" size [4.2 1.7 1.4] drive \"car\" wheelbase 2.4 track 1.4 velocity_bounds [0 30 0 0 0 0 "
+      "-90 "
+      "90] dynamics \"car friction=0.1\" encoder( rate 25 per_count 0.001 ) )");
+  double counted = 0.0, way = 0.0;
+  {
+    Simulation simulation(world, host_device(), {.actor = {{.name = ""}, {}}});
+    record::Recorder recorder(folder.string(),
+                              run_info(world, simulation.farm().sensor_set(), {.record_readings = true}), {});
+    simulation.command(std::vector<base::Twist>{{20.0, 0.0, 0.0}});
+    for (int tick = 0; tick < 20; ++tick) {
+      const base::TickRecord record = simulation.step();
+      recorder.write(record);
+      way = record.reports[0].X_WM.x;
+      for (const base::ReadingBlock& reading : record.readings) counted = reading.values[0];
+    }
+    recorder.finish();
+  }
+  EXPECT_GT(way, 0.1);
+  EXPECT_GT(counted, 2.0 * way);
+  record::Recording recording = record::open_recording(folder.string());
+  std::filesystem::remove_all(folder);
+  const Verification sound = verify(recording, host_device(), {});
+  EXPECT_TRUE(sound.sound());
+  for (const Comparison& c : sound.recomputed) EXPECT_EQ(c.largest, 0.0) << c.first;
+  for (auto& state : recording.states[0]) state.wheels = {};
+  EXPECT_FALSE(verify(recording, host_device(), {}).sound());
 }
 
 }  // namespace

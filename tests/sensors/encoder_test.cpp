@@ -205,6 +205,30 @@ TEST(Encoder, ScaleChangesTheCounts) {
   EXPECT_EQ(r[3], 198.0);
 }
 
+/// Speeds of wheels count in place of the path: a locked wheel, and one that spins, of a robot at rest. Between ticks,
+/// too. Without them (an obstacle stopped the car), the path counts again.
+TEST(Encoder, CountsTheWheelsOfCars) {
+  const world::World world = one_robot({setting("rate", {20})});
+  farm::Farm farm(world, device());
+  farm.subscribe_all();
+  std::vector<base::Report> states = robots::states_at_load(world);
+  farm.tick(0, states);
+  states[0].time = 100'000'000, states[0].wheels = {0.0f, 2.0f};
+  const std::vector<double> half = values_of(farm.sample_between(50'000'000, states)[0]);
+  EXPECT_EQ(half[2], 0.0);
+  EXPECT_EQ(half[3], 100.0);
+  EXPECT_EQ(farm.tick(100'000'000, states)[0].values[3], 200.0);
+  states[0].time = 200'000'000, states[0].X_WM.x = 0.05, states[0].wheels = {};
+  const std::vector<double> stopped = values_of(farm.tick(200'000'000, states)[0]);
+  EXPECT_EQ(stopped[2], 50.0);
+  EXPECT_EQ(stopped[3], 250.0);
+
+  world::World car = one_robot({setting("slip_ratio", {0, 0})});
+  car.movers[0].dynamics.name = "car";
+  expect_in("'dynamics \"car\"' compute their slip; leave 'slip_ratio' out",
+            refusal_of([&] { sensors::SensorSet sensor_set(car); }));
+}
+
 /// Slip in readings as a distribution; the fine resolution avoids quantisation.
 TEST(Encoder, SlipHasTheFilesDeviationAfterAMetre) {
   world::World world;
