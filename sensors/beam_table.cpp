@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/hash.h"
 #include "base/number_text.h"
+#include "sensors/lidar.h"
 #include "sensors/lidar_beams.h"
+#include "sensors/settings.h"
 
 namespace sf::sensors {
 
@@ -114,6 +118,27 @@ BeamTable parse_beam_table(const std::string& file, std::string_view text) {
                            "has no beams; expected a heading and one line per beam, such as "
                            "\"azimuth_deg,elevation_deg,time_s\"");
   return table;
+}
+
+std::string beam_table_path(const world::Sensor& sensor, const world::Setting& directions) {
+  std::string path = (std::filesystem::path(directions.file).parent_path() / directions.text).string();
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) refuse(sensor, directions.key, fmt::format("no such file: '{}'", path));
+  return path;
+}
+
+std::map<std::string, std::uint64_t> beam_table_hashes(const world::World& world) {
+  std::map<std::string, std::uint64_t> hashes;
+  for (const world::Mover& mover : world.movers)
+    for (const world::Sensor& sensor : mover.sensors) {
+      const auto named = std::ranges::find(sensor.settings, "directions", &world::Setting::key);
+      if (sensor.type != lidar_type.name || named == sensor.settings.end()) continue;
+      const auto [file, is_new] = hashes.try_emplace(beam_table_path(sensor, *named));
+      if (!is_new) continue;
+      const std::string text = base::read_text(file->first);
+      file->second = base::hash_bytes(text.data(), text.size());
+    }
+  return hashes;
 }
 
 BeamTable read_beam_table(const std::string& file) { return parse_beam_table(file, base::read_text(file)); }

@@ -4,9 +4,13 @@
 // tables that Livox publishes: `Time/s,Azimuth/deg,Zenith/deg`. Others are ignored.
 
 #include <algorithm>
+#include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "world/world.h"
 
 namespace sf::sensors {
 
@@ -21,6 +25,14 @@ struct BeamTable {
   /// Returns the latest time [s].
   double duration() const { return std::ranges::max(rows, {}, &Row::time).time; }
 };
+
+/// Returns the file that a sensor's setting `directions` names. @throws base::InputError, at the setting, if it is
+/// missing
+std::string beam_table_path(const world::Sensor& sensor, const world::Setting& directions);
+/// Start of the option of recordings that has the hash of a table, before the file's name.
+inline constexpr std::string_view kBeamTableOption = "directions ";
+/// Returns the files of a world's lidars, each once, with hashes of their contents. @throws base::InputError
+std::map<std::string, std::uint64_t> beam_table_hashes(const world::World& world);
 
 /// @throws base::InputError with file and line
 BeamTable read_beam_table(const std::string& file);

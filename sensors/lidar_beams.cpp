@@ -77,6 +77,12 @@ std::vector<double> elevations_of(const world::Sensor& sensor, const Preset* pre
 void read_rings(const world::Sensor& sensor, LidarLayout& layout) {
   const Preset* const preset = preset_of(sensor, kPresets);
   layout.rosette = preset == &kRosette;
+  for (const char* key : {"channels", "fov_v", "elevations", "azimuth_offsets"})
+    if (layout.rosette && find(sensor, key) != nullptr)
+      refuse(sensor, key,
+             fmt::format("the beams of \"{}\" form no rings, so '{}' has no effect; expected 'columns' (beams) and "
+                         "'fov' (of the circle) at most",
+                         kRosette.name, key));
   layout.elevations = elevations_of(sensor, preset);
   layout.columns = whole(sensor, "columns", preset != nullptr ? preset->columns : 1800, 1, kMostLidarBeams);
   layout.fov = std::min(
@@ -177,10 +183,11 @@ void BeamBudget::add(const world::Sensor& sensor, std::string_view key, std::siz
 std::shared_ptr<const LidarBeams> LidarReader::beams_of(const world::Sensor& sensor, std::uint32_t skip) {
   LidarLayout layout;
   if (const world::Setting* const file = find(sensor, "directions")) {
-    const std::string path = (std::filesystem::path(file->file).parent_path() / file->text).string();
-    for (const char* key : {"channels", "columns", "fov", "fov_v", "elevations", "azimuth_offsets", "scan_time"})
+    for (const char* key :
+         {"preset", "channels", "columns", "fov", "fov_v", "elevations", "azimuth_offsets", "scan_time"})
       if (find(sensor, key) != nullptr)
         refuse(sensor, key, fmt::format("'{}' and 'directions'; expected one of them", key));
+    const std::string path = beam_table_path(sensor, *file);
     auto& table = files_[path];
     if (!table) table = std::make_shared<BeamTable>(read_beam_table(path));
     layout.table = table.get(), layout.columns = static_cast<std::uint32_t>(table->rows.size());

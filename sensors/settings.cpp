@@ -175,7 +175,34 @@ double rate_of(const world::Sensor& sensor, double fallback) {
   return fallback;
 }
 
+namespace {
+
+/// Refuses a quantity that two settings state differently.
+void refuse_restated(const world::Sensor& sensor) {
+  struct Same {
+    std::string_view list, key;
+    std::size_t place;
+  };
+  constexpr Same kSame[] = {{"range", "range_min", 0},
+                            {"range", "range_max", 1},
+                            {"view", "range_min", 0},
+                            {"view", "range_max", 1},
+                            {"view", "fov", 2}};
+  for (const auto& [list, key, place] : kSame) {
+    const world::Setting *one = find(sensor, list), *two = find(sensor, key);
+    if (one == nullptr || two == nullptr || one->numbers.size() <= place || two->numbers.size() != 1 ||
+        one->numbers[place] == two->numbers[0])
+      continue;
+    refuse(sensor, key,
+           fmt::format("'{}' is {:g}, but '{}' states {:g}; expected one of them", key, two->numbers[0], list,
+                       one->numbers[place]));
+  }
+}
+
+}  // namespace
+
 SensorSpec common_spec(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type) {
+  refuse_restated(sensor);
   SensorSpec row;
   row.mover = mover;
   row.sensor = number_of_type;

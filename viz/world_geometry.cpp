@@ -349,12 +349,14 @@ void ScanGeometry::add(const sensors::SensorSpec& laser, const base::ReadingBloc
   for (std::size_t i = 0; i < scan.values.size(); ++i) {
     const double bearing = bearing_of(laser, static_cast<std::uint32_t>(i));
     const glm::dvec3 end = transform(X_WS, scan.values[i] * glm::dvec3(base::direction(bearing), 0.0));
-    const bool hit = i < scan.hits.size() && scan.hits[i] != base::kNoHit;
+    const double hit = i >= scan.hits.size() || scan.hits[i] == base::kNoHit ? -1.0
+                       : scan.hits[i] == base::kFloorHit                     ? -2.0
+                                                                             : static_cast<double>(scan.hits[i]);
     const bool bounded = i >= scan.quality.size() || scan.quality[i] == base::QualityFlag::none;
     const auto add_sample = [&](const glm::dvec3& p) {
       append(data_.point_data, "range", {scan.values[i]});
       append(data_.point_data, "bearing", {bearing});
-      append(data_.point_data, "hit", {hit ? static_cast<double>(scan.hits[i]) : -1.0});
+      append(data_.point_data, "hit", {hit});
       append(data_.point_data, "bound", {bounded ? scan.bound : HUGE_VAL});
       append(data_.point_data, "robot", {static_cast<double>(scan.mover)});
       append(data_.point_data, "sensor", {static_cast<double>(scan.sensor)});

@@ -164,7 +164,7 @@ std::optional<base::Pose> read_pose(const std::string& text) {
 std::optional<TiltedPose> read_tilted_pose(const std::string& text) {
   if (const auto planar = read_pose(text)) return TiltedPose{.X = *planar};
   const auto v = read_coordinates(text, 6);
-  if (!v) return std::nullopt;
+  if (!v || std::abs((*v)[3]) > 180.0 || std::abs((*v)[4]) > 90.0) return std::nullopt;
   constexpr double kDegree = M_PI / 180.0;
   return TiltedPose{{(*v)[0], (*v)[1], (*v)[2], (*v)[5] * kDegree}, {(*v)[3] * kDegree, (*v)[4] * kDegree}, true};
 }

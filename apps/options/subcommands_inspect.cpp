@@ -108,7 +108,7 @@ void add_sense(CLI::App& app, Call& call) {
          "the world)")
       ->check(readable(read_tilted_pose,
                        "X,Y,YAW_DEG such as 1.5,-2,90 or X,Y,Z,ROLL_DEG,PITCH_DEG,YAW_DEG, each within "
-                       "1e7"))
+                       "1e7, roll within 180 and pitch within 90 degrees"))
       ->type_name("X,Y,YAW_DEG");
   sub->add_option("--robot", o.robot, "Name of the robot (default: the first with a sensor)")->type_name("NAME");
   add_robot_from(*sub, o);

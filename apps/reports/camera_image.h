@@ -17,8 +17,8 @@ enum class ImageKind { depth, labels, normals, colour, mono };
 bool is_jpeg(const std::string& file);
 
 /// Returns a PNG or JPEG file. Depth: 16 bits, millimetres; 0 without a surface, too near, or from 65.5355 m. Labels:
-/// 16 bits, 0 without a surface, 1 for the floor and roads, 2 plus the row of the model, at most kLargestLabel. Normals:
-/// red, green and blue are x, y and z in the camera's frame, -1 as 0 and 1 as 255; black without a surface.
+/// 16 bits, 0 without a surface, 1 for the floor and roads, 2 plus the row of the model, at most kLargestLabel.
+/// Normals: red, green and blue are x, y and z in the camera's frame, -1 as 0 and 1 as 255; black without a surface.
 /// @param jpeg of colour and mono only, in the camera's quality or the default one
 /// @pre normals need CameraSettings::normals, colour needs CameraSettings::rgb, mono CameraSettings::mono
 std::string camera_file(const sensors::CameraSettings& camera, const base::ReadingBlock& reading, ImageKind kind,

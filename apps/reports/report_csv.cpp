@@ -6,8 +6,10 @@
 
 #include "apps/reports/csv_text.h"
 #include "apps/reports/report.h"
+#include "apps/reports/spatial_pose.h"
 #include "base/elementary.h"
 #include "base/number_name.h"
+#include "base/tilted_pose.h"
 
 namespace sf::apps {
 
@@ -50,12 +52,32 @@ std::string hit_name(const world::World& world, std::uint32_t hit) {
 
 std::string csv_number(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
+std::optional<base::RigidTransform> spatial_pose(const sensors::SensorSet& sensor_set,
+                                                 const base::ReadingBlock& reading) {
+  const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
+  if (type.beams == nullptr && !type.is_scan) return std::nullopt;
+  const auto X_WS =
+      base::compose(base::transform_of(reading.X_WM, reading.tilt),
+                    type.is_scan ? base::transform_of(sensor_set.row(reading).X_MS) : sensor_set.beams(reading).X_MS);
+  if (type.is_scan && X_WS.R[2].z == 1.0) return std::nullopt;
+  return X_WS;
+}
+
 std::string place_of(const world::World& world, const sensors::SensorSet& sensor_set,
                      const base::ReadingBlock& reading) {
   const world::Mover& mover = world.movers[reading.mover];
   const base::Pose& R = reading.X_WM;
   const base::Pose& S = reading.X_WS;
   constexpr double kDegrees = 180.0 / M_PI;
+  const auto spatial = [](const base::TiltedPose& pose) {
+    return fmt::format("at ({:.6f}, {:.6f}, {:.6f}) m, roll {:.6f}, pitch {:.6f}, yaw {:.6f} deg", pose.X.x, pose.X.y,
+                       pose.X.z, kDegrees * pose.tilt.roll, kDegrees * pose.tilt.pitch,
+                       kDegrees * base::wrap_angle(pose.X.yaw));
+  };
+  const auto X_WS = spatial_pose(sensor_set, reading);
+  if (R.z != 0.0 || !base::is_level(reading.tilt))
+    return fmt::format("{} {}; its {} {}", mover.name, spatial({R, reading.tilt}), sensor_set.row(reading).name,
+                       spatial(X_WS ? base::tilted_pose_of(*X_WS) : base::TiltedPose{S, {}}));
   return fmt::format("{} at ({:.6f}, {:.6f}) m, {:.6f} deg; its {} at ({:.6f}, {:.6f}, {:.6f}) m, {:.6f} deg",
                      mover.name, R.x, R.y, kDegrees * base::wrap_angle(R.yaw), sensor_set.row(reading).name, S.x, S.y,
                      S.z, kDegrees * base::wrap_angle(S.yaw));

@@ -9,9 +9,10 @@
 #include "apps/reports/rate_warnings.h"
 #include "apps/reports/report.h"
 #include "apps/reports/robot_report.h"
+#include "apps/reports/spatial_pose.h"
 #include "base/elementary.h"
 #include "base/hash.h"
-#include "base/rigid_transform.h"
+#include "base/tilted_pose.h"
 #include "sensors/accuracy.h"
 #include "sensors/camera.h"
 #include "sensors/laser.h"
@@ -92,9 +93,14 @@ std::string_view word_of(base::QualityFlag quality) {
   return kWords[static_cast<std::size_t>(quality)];
 }
 
+/// Returns [x y yaw], or [x y z roll pitch yaw] of a robot that is tilted or not at a height of 0.
+Json body_pose_json(const base::Pose& X, const base::Tilt& tilt) {
+  if (X.z == 0.0 && base::is_level(tilt)) return pose_json(X);
+  return {X.x, X.y, X.z, tilt.roll, tilt.pitch, base::wrap_angle(X.yaw)};
+}
+
 /// Returns the position and orientation of a spatial sensor, a unit quaternion [w x y z], in the world.
-Json spatial_pose_json(const base::ReadingBlock& reading, const sensors::SpatialBeams& beams) {
-  const auto X_WS = base::compose(base::transform_of(reading.X_WM, reading.tilt), beams.X_MS);
+Json spatial_pose_json(const base::RigidTransform& X_WS) {
   const glm::dquat q = glm::quat_cast(X_WS.R);
   return {{"sensor_position", {X_WS.p.x, X_WS.p.y, X_WS.p.z}}, {"sensor_orientation", {q.w, q.x, q.y, q.z}}};
 }
@@ -451,19 +457,16 @@ std::string stream_summary_json(const netio::StreamSummary& s) {
 std::string reading_json(const world::World& world, const sensors::SensorSet& sensor_set,
                          const base::ReadingBlock& reading) {
   const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
-  Json head{{"robot", world.movers[reading.mover].name},
-            {"sensor", reading.sensor},
-            {"sensor_name", sensor_set.row(reading).name},
-            {"type", type.name},
-            {"pose", pose_json(reading.X_WM)},
-            {"sensor_pose", pose_json(reading.X_WS)}};
+  Json head{{"robot", world.movers[reading.mover].name},          {"sensor", reading.sensor},
+            {"sensor_name", sensor_set.row(reading).name},        {"type", type.name},
+            {"pose", body_pose_json(reading.X_WM, reading.tilt)}, {"sensor_pose", pose_json(reading.X_WS)}};
   if (type.bound != nullptr) {
     head["accuracy"] = sensors::word_of(type, reading.mode);
     const double sigma = sensor_set.row(reading).sigma;
     head["bound"] = sigma > 0.0 ? Json() : finite_json(reading.bound);
     if (sigma > 0.0) head.update(noise_json(reading.bound_without_noise, sigma));
   }
-  if (type.beams != nullptr) head.update(spatial_pose_json(reading, sensor_set.beams(reading)));
+  if (const auto X_WS = spatial_pose(sensor_set, reading)) head.update(spatial_pose_json(*X_WS));
   if (type.id == sensors::kCamera) {
     head.update(image_json(
         world, sensor_set.settings_of<sensors::CameraSettings>(sensors::kCamera, reading.mover)[reading.sensor],

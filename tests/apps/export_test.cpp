@@ -109,6 +109,25 @@ TEST(ExportClouds, BothFormatsHaveTheEchoes) {
   expect_in(fmt::format("element vertex {}\n", echoes), ply);
 }
 
+/// Recordings refer to tables of directions: points of another table would be wrong.
+TEST(ExportClouds, NeedTheRecordedTableOfDirections) {
+  const Folder folder;
+  const std::string table = "azimuth_deg,elevation_deg\n0,0\n20,5\n";
+  folder.write("t.csv", table);
+  run_successfully({"run", folder.write("w.world", "position( lidar( directions \"t.csv\" ) )"), "--duration", "0.2",
+                    "--record", folder.path("r"), "--record-readings"});
+  const auto clouds = [&] {
+    return run_program({"export", folder.path("r"), "--clouds", "ply", "-o", folder.path("c")});
+  };
+  folder.write("t.csv", "azimuth_deg,elevation_deg\n0,0\n10,5\n");
+  EXPECT_EQ(clouds().code, 2);
+  expect_in("t.csv' has changed since the run was recorded", clouds().err);
+  folder.write("t.csv", table);
+  EXPECT_EQ(clouds().code, 0);
+  std::filesystem::remove(folder.path("t.csv"));
+  expect_in("w.world:1: no such file: '" + folder.path("t.csv"), clouds().err);
+}
+
 TEST(ExportClouds, SayWhenThereAreNone) {
   const Folder folder;
   run_successfully(

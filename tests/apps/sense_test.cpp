@@ -9,6 +9,7 @@
 #include "sensors/sensor_type.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
+#include "tests/refusal.h"
 #include "tests/units.h"
 
 namespace sf {
@@ -196,6 +197,29 @@ TEST(Sense, TheDefaultRobotIsAtAFreePosition) {
                                          "model( name \"pillar\" pose [0 0 0 0] size [2 2 1] )\n");
   const Json scan(run_program({"sense", world, "--json"}).out);
   EXPECT_GT(std::max(std::abs(scan.number("/pose/0")), std::abs(scan.number("/pose/1"))), 1.0);
+}
+
+/// Tilted robots, and those above the ground, have six numbers; a laser that tilts has its position and orientation.
+TEST(Sense, TiltedPosesHaveSixNumbers) {
+  const Folder folder;
+  const std::string world = wall_world(folder, 0.0);
+  const Json level = sense({world, "--pose", "-2,3,90"});
+  EXPECT_EQ(level.size("/pose"), 3u);
+  EXPECT_FALSE(level.has("/sensor_orientation"));
+  EXPECT_EQ(sense({world, "--pose", "-2,3,-5,0,0,90"}).number("/pose/2"), -5.0);
+  const Outcome text = run_successfully({"sense", world, "--pose", "-2,3,0.5,10,-20,90"});
+  expect_in(
+      "scout at (-2.000000, 3.000000, 0.500000) m, roll 10.000000, pitch -20.000000, yaw 90.000000 deg; its "
+      "laser:0 at (",
+      text.err);
+  const Json tilted = sense({world, "--pose", "-2,3,0.5,10,-20,90"});
+  for (const auto& [k, value] : {std::pair{2, 0.5}, {3, 10 * kDegree}, {4, -20 * kDegree}, {5, 90 * kDegree}})
+    EXPECT_NEAR(tilted.number("/pose/" + std::to_string(k)), value, 1e-12);
+  // The laser is 0.2 m above the origin along the robot's tilted axis.
+  EXPECT_NEAR(tilted.number("/sensor_position/2"), 0.5 + 0.2 * std::cos(10 * kDegree) * std::cos(20 * kDegree), 1e-9);
+  EXPECT_EQ(tilted.size("/sensor_orientation"), 4u);
+  for (const char* pose : {"0,0,0,0,90.1,0", "0,0,0,181,0,0"})
+    expect_in("pitch within 90 degrees", run_program({"sense", world, "--pose", pose}).err);
 }
 
 }  // namespace sf

@@ -203,6 +203,7 @@ TEST(Lasers, RejectsSettingsOutOfRange) {
            {"laser(\n fov 361 )", 2, "0 to 360"},
            {"laser( fov -1 )", 1, "0 to 360"},
            {"laser(\n range_max 0 )", 2, "more than 0"},
+           {"ranger( sensor( view [0 5 30]\n fov 20 ) )", 2, "'fov' is 20, but 'view' states 30"},
            {"laser( range_max 1e8 )", 1, "to 1e+07 m"},
            {"laser(\n range_min 9 )", 2, "smallest range"},
            {"ranger( sensor(\n range [-1 5] ) )", 2, "smallest range"},

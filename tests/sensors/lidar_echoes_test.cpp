@@ -344,7 +344,7 @@ TEST(LidarEchoes, ImpossibleSettingsAreRefused) {
   expect_in("'dropout'", refused("dropout 1.5"));
   expect_in("'scan_time'", refused("rolling 1 scan_time 0"));
   expect_in("20000 different times; expected at most 10000", refused("channels 1 columns 20000 rolling 1"));
-  expect_in("none.csv", refused("directions \"none.csv\""));
+  expect_in("trial.world:2: no such file: 'none.csv'", refused("directions \"none.csv\""));
   expect_in("'channels' and 'directions'", refused("directions \"none.csv\" channels 3"));
   expect_in("'reflectance' is -1", refusal_of([] { world_of("model( reflectance -1 )"); }));
 }
