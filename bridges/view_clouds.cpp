@@ -8,6 +8,7 @@
 #include "record/cdr.h"
 #include "record/fleet_message.h"
 #include "record/ros_messages.h"
+#include "sensors/laser_modes.h"
 #include "sensors/lidar.h"
 
 namespace sf::bridges {
@@ -66,8 +67,9 @@ void ViewClouds::add(const base::ReadingBlock& reading) {
 
 void ViewClouds::add_points(const base::ReadingBlock& reading, Cloud& cloud) const {
   const sensors::SensorSpec& spec = sensor_set_.row(reading);
-  const sensors::SpatialBeams spatial =
-      cloud.planar ? sensors::SpatialBeams{base::transform_of(spec.X_MS), {}, {}} : sensor_set_.beams(reading);
+  const sensors::SpatialBeams spatial = cloud.planar
+                                            ? sensors::SpatialBeams{sensors::laser_mount(sensor_set_, reading), {}, {}}
+                                            : sensor_set_.beams(reading);
   base::RigidTransform X = base::compose(base::transform_of(reading.X_WM, reading.tilt), spatial.X_MS);
   X.p -= origin_;
   cloud.position = X.p;

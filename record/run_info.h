@@ -110,6 +110,7 @@ struct SensorInfo {
   double sweep = 0.0;                   ///< [s] of a rolling scan; not read back
   std::vector<StandardTopic> standard;  ///< not read back, since the world contains them
   std::string frame;                    ///< not read back
+  base::Tilt tilt;                      ///< of the plane of a scan, after X_MS; not read back
 };
 
 /// Wheel encoders, with the parameters that the robot assumes.

@@ -192,7 +192,7 @@ void TickMessages::add_fixed(const MoverInfo& mover, const MoverTopics& topics) 
     transforms_.push_back({0, root_, mover.odom_frame, {}});
   if (!topics.footprint.empty()) transforms_.push_back({0, mover.base_frame, topics.footprint, {}});
   for (const SensorTopics& each : topics.sensors) {
-    transforms_.push_back({0, mover.base_frame, each.header.frame, each.sensor->X_MS});
+    transforms_.push_back({0, mover.base_frame, each.header.frame, each.sensor->X_MS, each.sensor->tilt});
     for (const StandardTopic& element : each.sensor->standard)
       if (element.message != StandardTopic::Message::map && element.frame != each.header.frame &&
           element.frame != transforms_.back().child)

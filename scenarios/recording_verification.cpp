@@ -186,7 +186,7 @@ class Verifier {
   void add_spatial() {
     if (spatial_scans_ > 0)
       result_.skipped.push_back(
-          fmt::format("{} scans of rolling lasers, of tilted robots or on terrain in plain C++, which casts level ones "
+          fmt::format("{} scans of rolling or tilted lasers or on terrain in plain C++, which casts level ones "
                       "from one pose",
                       spatial_scans_));
   }
@@ -370,12 +370,13 @@ class Verifier {
     return settled(laser, std::move(all));
   }
 
-  /// Adds every `stride_`-th scan to the list for plain C++.
-  /// True for scans that are not planar: on terrain, of tilted robots, or rolling ones.
+  /// True for scans that are not planar: on terrain, of tilted robots or lasers, or rolling ones.
   bool is_spatial(std::uint32_t mover, std::uint32_t sensor, const base::Tilt& tilt) const {
-    return !world_.terrain.empty() || !base::is_level(tilt) || reference_.laser(mover, sensor).laser.scan_time > 0.0;
+    const sensors::LaserSettings& laser = reference_.laser(mover, sensor).laser;
+    return !world_.terrain.empty() || !base::is_level(tilt) || !base::is_level(laser.tilt) || laser.scan_time > 0.0;
   }
 
+  /// Adds every `stride_`-th scan to the list for plain C++.
   void ask(const base::ReadingBlock& reading, const std::vector<double>& ranges) {
     if (faulty_.contains({reading.type, reading.mover, reading.sensor, reading.sequence})) {
       ++faulty_scans_;

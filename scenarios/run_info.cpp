@@ -11,6 +11,7 @@
 #include "scenarios/world_shape.h"
 #include "sensors/accuracy.h"
 #include "sensors/beam_table.h"
+#include "sensors/laser_modes.h"
 
 namespace sf::scenarios {
 
@@ -32,9 +33,13 @@ record::SensorTypeInfo sensor_type_info(const sensors::SensorType& type, std::sp
 void add_type(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
     info.sensor_types.push_back(sensor_type_info(*group.type, group.rows));
-    for (const sensors::SensorSpec& row : group.rows)
-      info.movers[row.mover].sensors.push_back({group.type->id, row.name, "", row.X_MS, row.rate, row.fov, row.elements,
-                                                row.range_min, row.limit, row.width, row.sweep});
+    for (std::size_t i = 0; i < group.rows.size(); ++i) {
+      const sensors::SensorSpec& row = group.rows[i];
+      auto& mounted = info.movers[row.mover].sensors;
+      mounted.push_back({group.type->id, row.name, "", row.X_MS, row.rate, row.fov, row.elements, row.range_min,
+                         row.limit, row.width, row.sweep});
+      if (group.type->is_scan) mounted.back().tilt = group.settings_as<sensors::CastLaser>()[i].laser.tilt;
+    }
   }
 }
 

@@ -175,8 +175,10 @@ std::vector<ModeResult> tradeoff(const world::World& world, gpu::Device& device,
       if (mode == 0) exact = read;
       compare(read, exact, grade);
       const auto level = [](const base::Report& report) { return base::is_level(report.tilt); };
+      const auto planar = [](const sensors::CastLaser& cast) { return base::is_level(cast.laser.tilt); };
       if (mode == 0 && type.id == sensors::kLaser && world.terrain.empty() &&
-          std::ranges::all_of(paths.front(), level)) {
+          std::ranges::all_of(paths.front(), level) &&
+          std::ranges::all_of(sensor_set.settings_of<sensors::CastLaser>(sensors::kLaser), planar)) {
         grade_errors(laser_errors(*entrants[0], paths, read, sensor_set), grade);
         grade.covered_max = grade.max;  // `exact` does not differ from itself
       }

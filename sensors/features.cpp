@@ -234,7 +234,11 @@ constexpr PlainForm kForm{kFeatures, "features", kNumbers};
 std::unique_ptr<FeatureSource> feature_source(const world::World& world, const WiredInput& input,
                                               const estimation::FeatureOptions& options) {
   const world::Mover& mover = world.movers[input.mover];
-  if (input.type == kLaser) return std::make_unique<LaserFeatures>(lasers_of(mover)[input.sensor], options);
+  if (input.type == kLaser) {
+    const LaserSettings laser = lasers_of(mover)[input.sensor];
+    require_level(world, laser, "'features'");
+    return std::make_unique<LaserFeatures>(laser, options);
+  }
   if (input.type != kLidar && input.type != kSonar && input.type != kInfrared && input.type != kFiducial)
     return nullptr;
   const world::Sensor& settings = input_settings(world, input);

@@ -239,7 +239,9 @@ bool Lasers::moves(std::uint32_t row) const {
 
 /// The planar caster sees no terrain, and no tilt.
 bool Lasers::needs_scene(std::size_t i) const {
-  return !world_.terrain.empty() || !base::is_level(states_[rows_[due_[i].row].mover].tilt) || rolling_[i] != 0;
+  const std::uint32_t row = due_[i].row;
+  return !world_.terrain.empty() || !base::is_level(states_[rows_[row].mover].tilt) ||
+         !base::is_level(lasers_[row].laser.tilt) || rolling_[i] != 0;
 }
 
 /// Bearings [rad] of the cast beams of a laser, without angular noise.
@@ -305,8 +307,8 @@ void Lasers::cast_in_scene(std::size_t i, unsigned thread) {
     beams = &noisy;
   }
   TiltedScan& out = scans_[thread];
-  tilted_->cast(*beams, row.mover, base::transform_of(lasers_[r].laser.X_MS), row.range_max,
-                times.empty() ? nullptr : &trails_, thread, out);
+  tilted_->cast(*beams, row.mover, mount_of(lasers_[r].laser), row.range_max, times.empty() ? nullptr : &trails_,
+                thread, out);
   const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{caster_.lane(r)};
   row.grazing = false;
   for (std::size_t k = 0; k < plan.samples.size(); ++k) {

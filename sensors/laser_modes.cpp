@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "base/elementary.h"
+#include "base/tilted_pose.h"
 #include "raycast/ray_caster.h"
 #include "scene/rasterizer.h"
 #include "sensors/accuracy.h"
@@ -34,6 +35,10 @@ CastLaser cast_laser(const world::World& world, const LaserSettings& laser) {
   return cast;
 }
 
+base::RigidTransform laser_mount(const SensorSet& sensor_set, const base::ReadingBlock& reading) {
+  return mount_of(sensor_set.settings_of<CastLaser>(reading.type, reading.mover)[reading.sensor].laser);
+}
+
 Reaches reaches_of(const world::World& world) {
   Reaches reaches;
   const auto add = [&](const world::Segment& s) { reaches.longest = std::max(reaches.longest, length(s.b - s.a)); };
@@ -53,7 +58,7 @@ ErrorBound bound_of_laser(const world::World& world, const ParsedSensors& sensor
   const Reaches reaches = reaches_of(world);
   const double planar =
       laser_bound(cast.laser.range_max, cast.single, reaches.longest, reaches.farthest + cast.laser.range_max);
-  const bool in_scene = !world.terrain.empty() || cast.laser.scan_time > 0.0 ||
+  const bool in_scene = !world.terrain.empty() || cast.laser.scan_time > 0.0 || !base::is_level(cast.laser.tilt) ||
                         !world.movers[sensors.rows[row].mover].dynamics.name.empty();
   return {in_scene ? std::max(planar, scene::kRangeError) : planar,
           "cast beams that do not graze and are not nearer than range_min; the others are flagged"};

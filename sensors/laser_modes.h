@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sensors/laser_settings.h"
+#include "sensors/sensor_set.h"
 
 namespace sf::sensors {
 
@@ -24,6 +25,9 @@ struct CastLaser {
                               ///< hits; empty: ranges are interpolated linearly
 };
 CastLaser cast_laser(const world::World& world, const LaserSettings& laser);
+
+/// Returns the pose of the laser of a reading in its mover's frame.
+base::RigidTransform laser_mount(const SensorSet& sensor_set, const base::ReadingBlock& reading);
 
 /// Largest dimensions of a world, including movers.
 struct Reaches {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
+#include "base/tilted_pose.h"
 #include "sensors/accuracy.h"
 #include "sensors/elements.h"
 #include "sensors/settings.h"
@@ -53,12 +55,28 @@ void check(const world::Sensor& sensor, LaserSettings& laser) {
   laser.fov = std::min(laser.fov, kTurn);
 }
 
+/// A level mount is computed as that of `pose`, whose bytes it has.
+void read_mount(const world::Sensor& sensor, LaserSettings& laser) {
+  const base::TiltedPose mount = base::tilted_pose_of(spatial_mount(sensor));
+  const auto pose = tuple(sensor, "pose6", 6, "[x y z roll pitch yaw]");
+  if (pose && ((*pose)[3] != 0.0 || (*pose)[4] != 0.0)) {
+    laser.X_MS = mount.X, laser.tilt = mount.tilt;
+    return;
+  }
+  laser.X_MS = sensor.X_MS;
+  if (pose) {
+    const double unit = sensor.metres_per_unit;
+    laser.X_MS = base::compose(
+        laser.X_MS, {unit * (*pose)[0], unit * (*pose)[1], unit * (*pose)[2], sensor.radians_per_unit * (*pose)[5]});
+  }
+  laser.X_MS.z += 0.5 * sensor.height;
+}
+
 /// @param laser defaults of samples, field of view and range, which depend on the form of the sensor
 LaserSettings read_laser(const world::Sensor& sensor, LaserSettings laser) {
   const SensorSpec common = common_spec(sensor, 0, 0);
   laser.name = sensor.name;
-  laser.X_MS = sensor.X_MS;
-  laser.X_MS.z += 0.5 * sensor.height;
+  read_mount(sensor, laser);
   laser.samples = whole(sensor, "samples", laser.samples, 1, kMostSamples);
   read_range(sensor, "sview", 3, laser);
   read_range(sensor, "view", 3, laser);
@@ -129,6 +147,15 @@ std::vector<LaserSettings> lasers_of(const world::Mover& mover) {
   return lasers;
 }
 
+void require_level(const world::World& world, const LaserSettings& laser, std::string_view use) {
+  if (base::is_level(laser.tilt)) return;
+  throw base::InputError(
+      world.file, 0,
+      fmt::format("laser '{}' is tilted by its 'pose6', but {} takes its scans to be level; expected "
+                  "a roll and a pitch of 0, or another laser",
+                  laser.name, use));
+}
+
 world::Sensor laser_sensor(const LaserSettings& laser) {
   world::Sensor sensor{.type = std::string(kLaserWord.type), .name = laser.name, .X_MS = laser.X_MS};
   sensor.color = laser.color;
@@ -144,6 +171,7 @@ world::Sensor laser_sensor(const LaserSettings& laser) {
   set("rate", {laser.rate});
   set("phase", {laser.phase});
   set("latency", {laser.latency});
+  if (!base::is_level(laser.tilt)) set("pose6", {0.0, 0.0, 0.0, laser.tilt.roll, laser.tilt.pitch, 0.0});
   if (laser.scan_time > 0.0) set("rolling", {1.0}), set("scan_time", {laser.scan_time});
   const world::Accuracy& accuracy = laser.accuracy;
   if (!accuracy.word.empty()) sensor.settings.push_back({"accuracy", {}, accuracy.word, accuracy.line, accuracy.file});

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/rigid_transform.h"
 #include "raycast/beams.h"
 #include "sensors/sensor_type.h"
 
@@ -16,6 +17,7 @@ namespace sf::sensors {
 
 /// Settings of one laser.
 struct LaserSettings : raycast::ScanSettings {
+  base::Tilt tilt;            ///< of the mount (`pose6`): X_MS and this are the sensor in the mover's frame
   double rate = 10.0;         ///< [Hz] > 0
   double phase = 0.0;         ///< [s] time of the first reading
   double latency = 0.0;       ///< [s] from measurement to delivery
@@ -27,15 +29,15 @@ struct LaserSettings : raycast::ScanSettings {
 
 /// Keys of a laser, in addition to the common ones.
 inline constexpr std::string_view kLaserKeys[] = {"fov", "samples", "range_min", "range_max", "laser_color", "noise",
-                                                  "resolution", "rolling", "scan_time",
+                                                  "resolution", "rolling", "scan_time", "pose6",
                                                   // Stage's older name of `resolution`, with the same meaning
                                                   "laser_sample_skip"};
 inline constexpr std::string_view kRangerKeys[] = {"scount", "sview", "spose[]", "spose3[]", "noise", "resolution",
                                                    "rolling", "scan_time",
                                                    // accepted but not modelled
                                                    "ssize", "sraycount"};
-inline constexpr std::string_view kBlockKeys[] = {"range", "view",       "fov",     "samples",
-                                                  "noise", "resolution", "rolling", "scan_time"};
+inline constexpr std::string_view kBlockKeys[] = {"range",      "view",    "fov",       "samples", "noise",
+                                                  "resolution", "rolling", "scan_time", "pose6"};
 inline constexpr world::SensorKeyword kLaserWord{"laser", kLaserKeys};
 inline constexpr world::SensorKeyword kRangerWord{"ranger", kRangerKeys, kBlockKeys};
 
@@ -49,6 +51,13 @@ inline bool has_laser(const world::Mover& mover) {
 /// lasers of a ranger, are renamed `name[k]`. Worlds are parsed once, into a SensorSet.
 /// @throws base::InputError with file and line for an invalid setting
 std::vector<LaserSettings> lasers_of(const world::Mover& mover);
+
+/// Returns the pose of a laser in the mover's frame.
+inline base::RigidTransform mount_of(const LaserSettings& laser) { return base::transform_of(laser.X_MS, laser.tilt); }
+
+/// Refuses a laser that is mounted tilted. @param use of its scans as planar ones, e.g. "an occupancy map"
+/// @throws base::InputError
+void require_level(const world::World& world, const LaserSettings& laser, std::string_view use);
 
 /// Returns a laser as a sensor, for worlds built in code. `lasers_of` restores the same settings.
 world::Sensor laser_sensor(const LaserSettings& laser);

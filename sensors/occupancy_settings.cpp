@@ -7,6 +7,7 @@
 #include "sensors/derived/wiring.h"
 #include "sensors/infrared.h"
 #include "sensors/laser.h"
+#include "sensors/laser_settings.h"
 #include "sensors/occupancy.h"
 #include "sensors/settings.h"
 #include "sensors/sonar.h"
@@ -176,6 +177,7 @@ Occupancy occupancy_of(const world::Sensor& sensor, const world::World& world, s
   } else {
     const std::span<const SensorSpec> lasers = std::ranges::equal_range(groups[0].rows, m, {}, &SensorSpec::mover);
     map.laser = laser_of(sensor, mover, lasers);
+    require_level(world, lasers_of(mover)[map.laser], "an occupancy map");
     fill_from(sensor, lasers[map.laser], map.settings);
   }
   map.row.elements = maps::words(map.settings.grid);

@@ -26,6 +26,7 @@ ConeArray cone_array(const world::World& world, const RangeSensor& sensor) {
 RangeSource::RangeSource(const world::World& world, const RangeSensor& sensor) : sensor_(sensor) {
   if (sensor.type == kLaser) {
     const LaserSettings laser = lasers_of(world.movers[sensor.mover])[sensor.sensor];
+    require_level(world, laser, "an occupancy map");
     limits_ = {laser.range_min, laser.range_max};
     constant_ = laser.noise.range_sigma, proportional_ = laser.noise.range_proportional;
     for (std::uint32_t i = 0; i < laser.samples; ++i)

@@ -33,9 +33,8 @@ ScanMap::ScanMap(const maps::GridGeometry& geometry) : odds_(geometry, kRule) {}
 
 /// Replaces beams and ranges by their projections on the ground, in axes parallel to the world's. Beams that are too
 /// short, or look straight up or down, leave no mark.
-base::Pose ScanMap::project(const sensors::SensorSpec& laser, const base::ReadingBlock& scan,
+base::Pose ScanMap::project(const sensors::SensorSpec& laser, const base::RigidTransform& X_WS,
                             std::span<const glm::dvec2> beams) {
-  const auto X_WS = compose(base::transform_of(scan.X_WM, scan.tilt), base::transform_of(laser.X_MS));
   projected_.assign(beams.begin(), beams.end());
   for (std::size_t k = 0; k < ranges_.size(); ++k) {
     const glm::dvec2 d{X_WS.R * glm::dvec3(beams[k], 0.0)};
@@ -47,7 +46,8 @@ base::Pose ScanMap::project(const sensors::SensorSpec& laser, const base::Readin
   return {X_WS.p.x, X_WS.p.y, X_WS.p.z, 0.0};
 }
 
-void ScanMap::add(const world::World& world, const sensors::SensorSpec& laser, const base::ReadingBlock& scan) {
+void ScanMap::add(const world::World& world, const sensors::SensorSpec& laser, const base::RigidTransform& X_MS,
+                  const base::ReadingBlock& scan) {
   const double behind = 0.5 * odds_.geometry.cell;
   double range_min = laser.range_min > 0.0 ? laser.range_min + behind : 0.0;
   const double range_max = std::min(laser.limit, maps::kMaxRangeCells * odds_.geometry.cell);
@@ -56,8 +56,9 @@ void ScanMap::add(const world::World& world, const sensors::SensorSpec& laser, c
   ends_.resize(ranges_.size());
   std::vector<glm::dvec2>& level = beams_[{laser.fov, laser.elements}];
   if (level.empty()) level = maps::beam_directions(laser.fov, laser.elements);
-  const bool is_tilted = !base::is_level(scan.tilt);
-  const base::Pose X_WS = is_tilted ? project(laser, scan, level) : scan.X_WS;
+  const bool is_tilted = !base::is_level(scan.tilt) || X_MS.R[2].z != 1.0;
+  const base::Pose X_WS =
+      is_tilted ? project(laser, compose(base::transform_of(scan.X_WM, scan.tilt), X_MS), level) : scan.X_WS;
   if (is_tilted) range_min = 0.0;
   for (double& range : ranges_) range += behind;
   const std::vector<glm::dvec2>& beams = is_tilted ? projected_ : level;

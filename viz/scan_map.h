@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/reading.h"
+#include "base/rigid_transform.h"
 #include "maps/grid_update.h"
 #include "sensors/sensor_type.h"
 #include "world/world.h"
@@ -31,11 +32,13 @@ class ScanMap {
   /// beyond maps::kMaxRangeCells cells has no echo. An echo counts half a cell behind its range: the wall then gets a
   /// cell that is mostly solid, regardless of rounding, and lines of cells, which deviate up to half a cell from their
   /// beams, free no cell behind it.
-  void add(const world::World& world, const sensors::SensorSpec& laser, const base::ReadingBlock& scan);
+  /// @param X_MS pose of the laser in the robot's frame (sensors::laser_mount)
+  void add(const world::World& world, const sensors::SensorSpec& laser, const base::RigidTransform& X_MS,
+           const base::ReadingBlock& scan);
   maps::OccupancyGrid states() const { return maps::to_occupancy(odds_); }
 
  private:
-  base::Pose project(const sensors::SensorSpec& laser, const base::ReadingBlock& scan,
+  base::Pose project(const sensors::SensorSpec& laser, const base::RigidTransform& X_WS,
                      std::span<const glm::dvec2> beams);
 
   maps::LogOddsGrid odds_;

@@ -344,8 +344,9 @@ PolyData trajectories_geometry(const world::World& world, std::span<const std::v
   return data;
 }
 
-void ScanGeometry::add(const sensors::SensorSpec& laser, const base::ReadingBlock& scan) {
-  const auto X_WS = compose(base::transform_of(scan.X_WM, scan.tilt), base::transform_of(laser.X_MS));
+void ScanGeometry::add(const sensors::SensorSpec& laser, const base::RigidTransform& X_MS,
+                       const base::ReadingBlock& scan) {
+  const base::RigidTransform X_WS = compose(base::transform_of(scan.X_WM, scan.tilt), X_MS);
   for (std::size_t i = 0; i < scan.values.size(); ++i) {
     const double bearing = bearing_of(laser, static_cast<std::uint32_t>(i));
     const glm::dvec3 end = transform(X_WS, scan.values[i] * glm::dvec3(base::direction(bearing), 0.0));

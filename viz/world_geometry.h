@@ -49,14 +49,14 @@ struct MotionSample {
 /// `contact`; cell array: `robot`; `name`.
 PolyData trajectories_geometry(const world::World& world, std::span<const std::vector<MotionSample>> motions);
 
-/// Collects scans, tilted with their robots, as dots at the ends of their beams, or as the beams. Point arrays: `range`
-/// [m], `bearing` [rad], `hit` (row of the model that was hit; -1: none in range), `bound` [m] (largest error;
-/// infinite: not stated), `robot`, `sensor`, `time` [s].
+/// Collects scans, tilted with their robots and mounts, as dots at the ends of their beams, or as the beams. Point
+/// arrays: `range` [m], `bearing` [rad], `hit` (row of the model that was hit; -1: none in range, -2: the floor or
+/// terrain), `bound` [m] (largest error; infinite: not stated), `robot`, `sensor`, `time` [s].
 class ScanGeometry {
  public:
   explicit ScanGeometry(bool beams) : beams_(beams) {}
-  /// @param laser of the scan
-  void add(const sensors::SensorSpec& laser, const base::ReadingBlock& scan);
+  /// @param laser of the scan  @param X_MS its pose in the robot's frame (sensors::laser_mount)
+  void add(const sensors::SensorSpec& laser, const base::RigidTransform& X_MS, const base::ReadingBlock& scan);
   const PolyData& data() const { return data_; }
 
  private:

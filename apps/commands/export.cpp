@@ -90,8 +90,8 @@ std::vector<std::string> write_scans(const RecordingPart& part, world::World& wo
   for (std::size_t i = 0; i < ticks.size(); ++i) {
     viz::ScanGeometry scans(false);
     for (const base::ReadingBlock& scan : replay.scans_at(ticks[i])) {
-      scans.add(replay.laser(scan), scan);
-      map.add(world, replay.laser(scan), scan);
+      scans.add(replay.laser(scan), replay.X_MS(scan), scan);
+      map.add(world, replay.laser(scan), replay.X_MS(scan), scan);
     }
     series.add(time_at(part, ticks[i]), scans.data());
     progress.show(static_cast<double>(i) / static_cast<double>(ticks.size()));

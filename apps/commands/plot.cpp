@@ -78,7 +78,8 @@ void map_scans(const RecordingPart& part, world::World& world, gpu::Device& devi
   const std::vector<std::size_t> ticks = ticks_apart(part, 1.0);
   Progress progress("mapping");
   for (std::size_t i = 0; i < ticks.size(); ++i) {
-    for (const base::ReadingBlock& scan : replay.scans_at(ticks[i])) map.add(world, replay.laser(scan), scan);
+    for (const base::ReadingBlock& scan : replay.scans_at(ticks[i]))
+      map.add(world, replay.laser(scan), replay.X_MS(scan), scan);
     progress.show(static_cast<double>(i) / static_cast<double>(ticks.size()));
     heed_stop();
   }

@@ -20,6 +20,8 @@
 #include "base/time.h"
 #include "robots/kinematics.h"
 #include "scenarios/experiment.h"
+#include "sensors/laser.h"
+#include "sensors/laser_modes.h"
 
 namespace sf::apps {
 
@@ -90,6 +92,7 @@ base::Pose pose_between(const base::Report& before, const base::Report& after, s
 struct Shown {
   std::size_t mover = 0;
   const record::SensorInfo* sensor = nullptr;
+  base::RigidTransform X_MS;                                        ///< of a laser
   std::optional<viz::RangeReading> newest;                          ///< at the time of the last frame
   std::vector<std::pair<std::int64_t, viz::RangeReading>> arrived;  ///< since then, with their times [ns]
 };
@@ -156,13 +159,17 @@ class RunVideo::Work {
   using Key = std::tuple<std::uint32_t, std::uint8_t, std::uint32_t>;  // mover, type, index of the sensor
 
   void choose_sensors(const std::vector<std::size_t>& movers) {
+    const sensors::SensorSet sensor_set(world_);
     for (const std::size_t mover : movers) {
       const std::size_t before = shown_.size();
       std::map<std::uint8_t, std::uint32_t> count;
+      base::ReadingBlock laser{.mover = static_cast<std::uint32_t>(mover), .type = sensors::kLaser};
       for (const record::SensorInfo& sensor : info_.movers[mover].sensors) {
         const std::uint32_t number = count[sensor.type]++;
-        if (viz::has_ranges(info_, sensor))
-          shown_[{static_cast<std::uint32_t>(mover), sensor.type, number}] = {mover, &sensor, {}, {}};
+        if (!viz::has_ranges(info_, sensor)) continue;
+        Shown& shown = shown_[{laser.mover, sensor.type, number}] = {mover, &sensor, {}, {}, {}};
+        laser.sensor = number;
+        if (sensor.type == sensors::kLaser) shown.X_MS = sensors::laser_mount(sensor_set, laser);
       }
       if (shown_.size() == before)
         throw base::InputError(
@@ -176,10 +183,10 @@ class RunVideo::Work {
     const auto found = shown_.find({reading.mover, reading.type, reading.sensor});
     if (found == shown_.end()) return;
     viz::RangeReading kept{found->second.sensor, reading.X_WS, {reading.values.begin(), reading.values.end()}};
-    if (!base::is_level(reading.tilt) && kept.sensor->standard.empty()) {
-      const auto X_WS = compose(base::transform_of(reading.X_WM, reading.tilt), base::transform_of(kept.sensor->X_MS));
+    if (reading.type == sensors::kLaser) {
+      const auto X_WS = compose(base::transform_of(reading.X_WM, reading.tilt), found->second.X_MS);
       const base::TiltedPose pose = base::tilted_pose_of(X_WS);
-      kept.X_WS = pose.X, kept.tilt = pose.tilt;
+      if (!base::is_level(pose.tilt)) kept.X_WS = pose.X, kept.tilt = pose.tilt;
     }
     base::mark_too_near(reading.quality, kept.values);
     found->second.arrived.emplace_back(reading.time, std::move(kept));

@@ -10,6 +10,7 @@
 #include "base/tilted_pose.h"
 #include "farm/farm.h"
 #include "scenarios/recorded_states.h"
+#include "sensors/laser_modes.h"
 
 namespace sf::apps {
 
@@ -32,6 +33,10 @@ class ScanReplay {
   std::span<const base::ReadingBlock> scans_at(std::size_t tick);
   /// Returns the laser of a scan.
   const sensors::SensorSpec& laser(const base::ReadingBlock& scan) const { return farm_.sensor_set().row(scan); }
+  /// Returns its pose in the robot's frame.
+  base::RigidTransform X_MS(const base::ReadingBlock& scan) const {
+    return sensors::laser_mount(farm_.sensor_set(), scan);
+  }
 
  private:
   /// Memory of a scan.

@@ -68,7 +68,8 @@ int view_3d(const ViewOptions& options) {
   scene.field = field_grid(world, device, options.height);
   scene.frame = [&](std::size_t row) {
     viz::ScanGeometry beams(true);
-    for (const base::ReadingBlock& scan : replay.scans_at(ticks[row])) beams.add(replay.laser(scan), scan);
+    for (const base::ReadingBlock& scan : replay.scans_at(ticks[row]))
+      beams.add(replay.laser(scan), replay.X_MS(scan), scan);
     return viz::Frame3d{viz::bodies_geometry(world, poses_at(part, ticks[row])), beams.data(),
                         viz::lights_geometry(world, lights_at(part.recording, ticks[row])),
                         clouds ? echoes_of(clouds->at(ticks[row], true)) : viz::PolyData()};

@@ -144,7 +144,7 @@ std::string mode_results_json(const std::vector<scenarios::ModeResult>& results,
                               const scenarios::AccuracyTarget& target);
 std::string self_test_text(const SelfTestReport& test);
 std::string self_test_json(const SelfTestReport& test);
-/// Positions of robot and sensor, in one line.
+/// Poses of robot and sensor, in one line: six numbers each if the robot is tilted or not at a height of 0.
 std::string place_of(const world::World& world, const sensors::SensorSet& sensor_set,
                      const base::ReadingBlock& reading);
 

@@ -10,6 +10,7 @@
 #include "base/elementary.h"
 #include "base/number_name.h"
 #include "base/tilted_pose.h"
+#include "sensors/laser_modes.h"
 
 namespace sf::apps {
 
@@ -58,7 +59,7 @@ std::optional<base::RigidTransform> spatial_pose(const sensors::SensorSet& senso
   if (type.beams == nullptr && !type.is_scan) return std::nullopt;
   const auto X_WS =
       base::compose(base::transform_of(reading.X_WM, reading.tilt),
-                    type.is_scan ? base::transform_of(sensor_set.row(reading).X_MS) : sensor_set.beams(reading).X_MS);
+                    type.is_scan ? sensors::laser_mount(sensor_set, reading) : sensor_set.beams(reading).X_MS);
   if (type.is_scan && X_WS.R[2].z == 1.0) return std::nullopt;
   return X_WS;
 }

@@ -64,20 +64,29 @@ TEST(TickMessages, LatchedTopicsAreSentOnlyAtTheBeginning) {
 }
 
 TEST(TickMessages, ElementsHaveFramesBelowTheirSensor) {
-  const RunInfo info = named_info();
+  RunInfo info = named_info();
+  const SensorInfo& laser = info.movers[0].sensors[0];
+  info.movers[0].sensors[0].X_MS = {}, info.movers[0].sensors[0].tilt.pitch = 0.2;
   TickMessages messages(info);
   std::map<std::string, std::string> parents;
+  double turn[4] = {};
   messages.begin([&](const TopicMessage& message) {
     if (messages.topics()[message.topic].name != "/tf_static") return;
     CdrReader cdr(message.bytes);
     std::int64_t time = 0;
     for (std::uint32_t left = cdr.get_count(60); left > 0; --left) {
       const std::string parent = get_header(cdr, time);
-      parents[cdr.get_string()] = parent;
-      for (int i = 0; i < 7; ++i) cdr.get<double>();
+      const std::string child = cdr.get_string();
+      parents[child] = parent;
+      for (int i = 0; i < 7; ++i) {
+        const auto number = cdr.get<double>();
+        if (child == laser.frame && i >= 3) turn[i - 3] = number;
+      }
     }
     EXPECT_TRUE(cdr.good());
   });
+  EXPECT_NEAR(turn[1], std::sin(0.1), 1e-15) << "a laser with its nose down";
+  EXPECT_NEAR(turn[3], std::cos(0.1), 1e-15);
   EXPECT_EQ(parents.at("roomba_1/array"), "roomba_1/base_link");
   EXPECT_EQ(parents.at("roomba_1/array/field_1"), "roomba_1/array");
   EXPECT_EQ(parents.at("roomba_1/base_footprint"), "roomba_1/base_link");

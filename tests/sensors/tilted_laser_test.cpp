@@ -8,6 +8,7 @@
 #include "robots/kinematics.h"
 #include "scene/rasterizer.h"
 #include "sensors/laser.h"
+#include "sensors/laser_settings.h"
 #include "sensors/lidar.h"
 #include "sensors/mover_trail.h"
 #include "tests/refusal.h"
@@ -55,6 +56,66 @@ TEST(TiltedLaser, ReadsWhatALidarOfOneRingReads) {
       for (std::size_t i = 0; i < laser.values.size(); ++i) EXPECT_NEAR(laser.values[i], lidar.values[i], 1e-9);
       EXPECT_EQ(laser.bound, scene::kRangeError);
     }
+}
+
+/// A tilted mount of a level robot, and of a tilted one.
+TEST(TiltedLaser, IsMountedAsALidar) {
+  const world::World world = world_of(
+      "define robot position( size [0.4 0.4 0.5] origin [0 0 0 0] laser( pose [0.1 0 0.25 20] pose6 [0 0.1 0.2 25 -15 "
+      "30] size [0 0 0.1] samples 91 fov 180 range_max 12 ) lidar( pose [0.1 0 0.25 20] pose6 [0 0.1 0.2 25 -15 30] "
+      "size [0 0 0.1] elevations [0] columns 91 fov 180 range [0 12] ) )\n"
+      "model( name \"low\" pose [3 0.4 0 10] size [1 2 0.6] )\nmodel( name \"wall\" pose [9 0 0 0] size [0.2 12 3] )\n"
+      "robot( name \"r1\" pose [0 0 0 0] )\nrobot( name \"r2\" pose [0 3 0 0] )\n");
+  for (const base::Tilt& tilt : {base::Tilt{}, base::Tilt{0.3, -0.1}}) {
+    const Scan laser = sense(world, sensors::kLaser, tilt), lidar = sense(world, sensors::kLidar, tilt);
+    EXPECT_EQ(laser.hits, lidar.hits);
+    ASSERT_EQ(laser.values.size(), lidar.values.size());
+    for (std::size_t i = 0; i < laser.values.size(); ++i) EXPECT_NEAR(laser.values[i], lidar.values[i], 1e-9);
+    EXPECT_EQ(laser.bound, scene::kRangeError);
+  }
+  const auto parsed = sensors::laser_type.parse(world);
+  EXPECT_GE(sensors::laser_type.bound(world, parsed, 0).error, scene::kRangeError);
+  // The settings survive a world that is built in code.
+  world::World built = world;
+  const sensors::LaserSettings before = sensors::lasers_of(world.movers[0])[0];
+  built.movers[0].sensors = {sensors::laser_sensor(before)};
+  const base::RigidTransform X = mount_of(before), Y = mount_of(sensors::lasers_of(built.movers[0])[0]);
+  for (int k = 0; k < 3; ++k) EXPECT_LT(glm::length(X.R[k] - Y.R[k]), 1e-15) << k;
+}
+
+/// Without roll and pitch, `pose6` is `pose` to the bit: the planar caster casts, with its bound.
+TEST(TiltedLaser, LevelPose6IsPose) {
+  const auto scan = [](const std::string& mount) {
+    return sense(world_of("position( size [0.4 0.4 0.5] laser( " + mount +
+                          " samples 91 fov 360 range_max 12 ) )\n"
+                          "model( pose [9 0 0 0] size [0.2 12 3] )"),
+                 sensors::kLaser, {});
+  };
+  const Scan six = scan("pose6 [0.1 0.2 0.3 0 0 20]"), four = scan("pose [0.1 0.2 0.3 20]");
+  EXPECT_EQ(six.values, four.values);
+  EXPECT_EQ(six.bound, four.bound);
+  EXPECT_LT(six.bound, scene::kRangeError);
+}
+
+/// Sensors that stay level refuse a mount that they would ignore, and so do the uses of a tilted scan as a planar one.
+TEST(TiltedLaser, LevelSensorsRefuseATiltedMount) {
+  const auto refused = [](const std::string& inside) {
+    return refusal_of([&] {
+      const world::World world = world_of("position( size [1 1 1]\n" + inside + " )");
+      farm::Farm farm(world, host_device(), {.threads = 1});
+    });
+  };
+  for (const char* sensor : {"sonar", "infrared", "magnetometer", "gyro", "fiducial"}) {
+    const std::string text = refused(std::string(sensor) + "( pose6 [0 0 0 0 10 0] )");
+    expect_in("2: '" + std::string(sensor) + "' stays level and has no 'pose6'; expected 'pose [x y z yaw]'", text);
+    for (const char* has : {"lidar", "laser", "sensor of ranger", "camera", "radar", "imu"}) expect_in(has, text);
+  }
+  expect_in("'ranger' stays level", refused("ranger( pose6 [0 0 0 0 10 0] sensor( ) )"));
+  EXPECT_EQ(refused("ranger( sensor( pose6 [0 0 0 0 10 0] ) )"), "");
+  for (const char* use :
+       {"occupancy( )", "occupancy( sources [\"laser\"] )", "derived( type \"features\" inputs [\"laser\"] )"})
+    expect_in("laser 'laser:0' is tilted by its 'pose6'",
+              refused(std::string("laser( samples 9 pose6 [0 0 0 0 10 0] ) ") + use));
 }
 
 /// Nose down by 10 degrees, the middle beam meets the floor. The sensor, 0.75 m above the origin, tilts with its robot.

@@ -35,7 +35,7 @@ void add_beam(ScanMap& map, const world::World& world, double range, std::uint32
   scan.values = {&range, 1};
   const std::uint32_t hit = range < laser.limit ? met : base::kNoHit;
   scan.hits = {&hit, 1};
-  map.add(world, laser, scan);
+  map.add(world, laser, {}, scan);
 }
 
 TEST(ScanMap, EndIsOccupiedAndPathIsFree) {
@@ -84,7 +84,7 @@ TEST(ScanMap, TiltedScansAreSeenFromAbove) {
     scan.tilt.pitch = M_PI / 3;
     scan.values = {&range, 1};
     scan.hits = {&met, 1};
-    map.add(world, sensors::laser_type.parse(world).rows.at(0), scan);
+    map.add(world, sensors::laser_type.parse(world).rows.at(0), {}, scan);
     EXPECT_EQ(map.states().at({3, 2}), Cell::free);
     EXPECT_EQ(map.states().at({4, 2}), met == 0 ? Cell::occupied : Cell::free);
     EXPECT_EQ(map.states().at({5, 2}), Cell::unexplored);
@@ -122,7 +122,7 @@ TEST(ScanMap, FindsTheWallsOfARoom) {
     base::ReadingBlock scan;
     scan.X_WS = {x, 2.0, 0, 0};
     scan.values = ranges;
-    map.add(room, laser, scan);
+    map.add(room, laser, {}, scan);
   }
   const maps::OccupancyGrid grid = map.states();
   const auto at = [&](double x, double y) { return grid.at(maps::cell_at(grid.geometry, {x, y})); };

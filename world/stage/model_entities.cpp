@@ -123,6 +123,23 @@ struct ModelProperties {
   std::optional<std::uint32_t> mesh;  ///< row in `World::meshes`
 };
 
+/// Refuses to mount a sensor in six degrees of freedom that measures in the plane.
+/// @param keys of the sensor or of its block
+void refuse_pose6(BuildState& b, const Entity& entity, std::span<const std::string_view> keys) {
+  constexpr std::string_view kKey = "pose6";
+  const Property* const property = find(entity, kKey);
+  const auto takes = [&](std::span<const std::string_view> own) { return std::ranges::find(own, kKey) != own.end(); };
+  if (property == nullptr || takes(keys)) return;
+  std::vector<std::string> words;
+  for (const SensorKeyword& word : b.options.sensors) {
+    if (takes(word.keys)) words.emplace_back(word.type);
+    if (takes(word.block_keys)) words.push_back(fmt::format("sensor of {}", word.type));
+  }
+  fail(b.context, property->at,
+       fmt::format("'{}' stays level and has no 'pose6'; expected 'pose [x y z yaw]'. 'pose6' mounts {}", entity.word,
+                   fmt::join(words, ", ")));
+}
+
 ModelProperties read_model_properties(BuildState& b, const Entity& entity, Parent& parent) {
   ModelProperties said;
   said.kind = entity_kind(entity.type);
@@ -138,6 +155,7 @@ ModelProperties read_model_properties(BuildState& b, const Entity& entity, Paren
   const std::string type = is_lane_edge ? "laneedge" : entity.type;
   said.sensor = type == "derived" ? derived_keyword(b, entity) : find_sensor_keyword(b, type);
   if (said.sensor != nullptr) {
+    refuse_pose6(b, entity, said.sensor->keys);
     check_keys(b.context, entity, KeyScope::device, said.sensor->keys);
     return said;
   }
@@ -303,6 +321,7 @@ void add_children(BuildState& b, const Entity& entity, Parent& parent) {
     if (child.type == "block" && parent.model != kNone) {
       check_keys(b.context, child, KeyScope::block);
     } else if (child.type == "sensor" && parent.sensor != nullptr && !parent.sensor->block_keys.empty()) {
+      refuse_pose6(b, child, parent.sensor->block_keys);
       check_keys(b.context, child, KeyScope::sensor, parent.sensor->block_keys);
     } else if (child.type == "block" || child.type == "sensor") {
       const char* home = child.type == "block" ? "a model" : "a ranger";

@@ -117,8 +117,9 @@ TEST(VtkFiles, ScanDotsAreAtBeamEnds) {
   scan.time = 1'500'000'000;
   ScanGeometry dots(false), beams(true);
   const sensors::SensorSpec spec = sensors::laser_type.parse(world).rows.at(0);
-  dots.add(spec, scan);
-  beams.add(spec, scan);
+  const base::RigidTransform X_MS = mount_of(laser);
+  dots.add(spec, X_MS, scan);
+  beams.add(spec, X_MS, scan);
   write_poly_data(dots.data(), scenes::own_file("dots.vtp"));
   write_poly_data(beams.data(), scenes::own_file("beams.vtp"));
   const auto reader = read_poly_data(scenes::own_file("dots.vtp"));
@@ -141,7 +142,7 @@ TEST(VtkFiles, ScanDotsAreAtBeamEnds) {
   // Nose down by 30 degrees, the middle beam of 2 m ends 1 m below the sensor.
   scan.tilt.pitch = M_PI / 6;
   ScanGeometry tilted(true);
-  tilted.add(spec, scan);
+  tilted.add(spec, X_MS, scan);
   const glm::dvec3 way = tilted.data().points[3] - tilted.data().points[2];
   EXPECT_LT(glm::length(way - glm::dvec3(0.0, 2.0 * std::cos(M_PI / 6), -1.0)), 1e-12);
 }
