@@ -14,6 +14,10 @@ namespace {
 constexpr double kHoldRate = 100.0;  // [rad/s] of a standing car on the hold of its tyres
 constexpr double kContacts = 12.0;   // wheels and corners
 constexpr double kResponse = 0.25;   // [s] in which the drive-line corrects speeds
+// The drive pauses while a driven wheel spins faster than 1.5 times the wanted speed and 1 m/s, as at the limit of an
+// engine's revolutions. Wheels with grip slip less.
+constexpr double kMostSpin = 1.5;    // [-]
+constexpr double kSpinMargin = 1.0;  // [m/s]
 
 /// Returns the energy [J] of a spring whose force is bounded. @param most [N] >= 0
 double stored(double stiffness, double compression, double most) {
@@ -101,6 +105,13 @@ base::Report Vehicle::move(const base::Report& from, const base::Twist& command,
   return report;
 }
 
+double Vehicle::fastest_rim(const VehicleBody& body) const {
+  double fastest = 0.0;
+  for (std::size_t k = 0; k < kWheels; ++k)
+    if (rest_[k].drive > 0.0) fastest = std::max(fastest, model_.car.wheel_radius * std::abs(body.spin[k]));
+  return fastest;
+}
+
 // A rolling wheel's part along the axis is the way of the axle, however it is steered.
 glm::dvec2 Vehicle::rims_of(const VehicleBody& body) const {
   const base::SinCos steer = base::sin_cos(body.steer);
@@ -174,7 +185,7 @@ VehicleControls Vehicle::controls_for(const VehicleBody& body, const Goal& goal)
                        weight * (ahead.z + std::copysign(car.rolling, way));
   if (force * way < 0.0) {
     controls.brake = std::min(std::abs(force) * r, car.brake_limit);
-  } else {
+  } else if (fastest_rim(body) <= kMostSpin * std::abs(goal.forward) + kSpinMargin) {
     const double most = std::min(car.drive_limit, model_.power * r / std::max(std::abs(speed), kHoldSpeed));
     controls.drive = std::clamp(force * r, -most, most);
   }

@@ -137,6 +137,7 @@ class Vehicle final : public Dynamics {
     double forward = 0.0, turn = 0.0, rate = 0.0;  ///< [m/s], [rad/s], [m/s^2]
   };
   struct State;
+  double fastest_rim(const VehicleBody& body) const;  ///< [m/s] of the driven wheels
   void approach(Goal& goal, const base::Twist& command, double dt) const;
   VehicleControls controls_for(const VehicleBody& body, const Goal& goal) const;
   double bounded(double load, double closing) const;

@@ -191,6 +191,7 @@ TEST(Vehicle, WheelsSpinOnIceAndLock) {
   const Ways spinning = ways_of(start, {30.0}, 3.0);
   EXPECT_GT(spinning.car, 0.5);
   EXPECT_GT(spinning.left, 3.0 * spinning.car) << "full throttle";
+  EXPECT_NEAR(start.report.wheels.left, 1.5f * 30.0f + 1.0f, 1.0f) << "the engine's limit";
   Drive stop(family_on_ice(), 15.0);
   stop.go({}, 1.0);
   const Ways locked = ways_of(stop, {}, 2.0);
