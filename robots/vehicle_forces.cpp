@@ -13,6 +13,7 @@ namespace {
 constexpr double kHoldFade = 0.05;   // [s] in which the hold of a rolling tyre vanishes
 constexpr double kMotorSlack = 0.2;  // [rad/s] by which a skid drive's motor at full torque lags
 constexpr double kSill = 0.3;        // [-] height of the body's lower corners, in that of the box
+constexpr double kUpright = 0.99;    // [-] cosine of a tilt
 constexpr double kCornerFriction = 0.6;
 constexpr int kRounds = 5;
 constexpr double kSameGap = 1e-6;  // [m]
@@ -40,19 +41,20 @@ Vehicle::Contact Vehicle::contact_of(const VehicleBody& body, const glm::dmat3& 
   Contact contact{.p = arm, .normal = up};
   // Where the strut meets the plane of the ground below its end, and then that below this point, within its reach: what
   // is beyond may be the ground of another place.
-  double gap = 0.0, before = HUGE_VAL, slant = 0.0;
+  double gap = 0.0, before = HUGE_VAL;
+  world::GroundPoint below;
   for (int round = 0; round < (ground.is_flat() ? 1 : kRounds) && std::abs(gap - before) > kSameGap; ++round) {
     before = gap;
     gap = std::clamp(gap, -rest.compression - model_.travel - radius, rest.compression);
     const glm::dvec3 end = at - gap * up;
-    const world::GroundPoint below =
-        ground.contact(end, {body.p.x, body.p.y}, std::max(at.z - end.z, 0.0) + 0.5 * radius, radius);
-    const glm::dvec3 normal = normal_of(below);
-    slant = glm::dot(up, normal);
-    if (slant < kLeastSlant) return contact;
-    gap += (end.z - below.z) * normal.z / slant;
-    contact.normal = normal;
+    below = ground.contact(end, {body.p.x, body.p.y}, std::max(at.z - end.z, 0.0) + 0.5 * radius, radius);
+    const double rise = up.z - up.x * below.slope.x - up.y * below.slope.y;
+    if (rise <= 0.0 || rise * rise < kLeastSlant * kLeastSlant * (1.0 + glm::dot(below.slope, below.slope)))
+      return contact;
+    gap += (end.z - below.z) / rise;
   }
+  contact.normal = normal_of(below);
+  const double slant = glm::dot(up, contact.normal);
   contact.p = arm - gap * up;
   contact.compression = rest.compression - gap;
   contact.rate = -glm::dot(body.v + glm::cross(body.w, contact.p), contact.normal) / slant;
@@ -167,11 +169,12 @@ Vehicle::Contact Vehicle::corner_of(const VehicleBody& body, const glm::dmat3& R
   Contact contact{.p = R * (place - centre_)};
   const glm::dvec3 at = body.p + contact.p;
   const world::GroundPoint below = ground.contact(at, {body.p.x, body.p.y}, 0.5 * model_.car.wheel_radius);
+  const glm::dvec3 v = body.v + glm::cross(body.w, contact.p), up{-below.slope.x, -below.slope.y, 1.0};
+  if (below.z - at.z <= dt * glm::dot(v, up)) return contact;
   contact.normal = normal_of(below);
   contact.compression = (below.z - at.z) * contact.normal.z;
-  contact.rate = -glm::dot(body.v + glm::cross(body.w, contact.p), contact.normal);
+  contact.rate = -glm::dot(v, contact.normal);
   const double next = contact.compression + dt * contact.rate;
-  if (next <= 0.0) return contact;
   const double push = kBumpStiffness * model_.spring * next + 4.0 * model_.damper * contact.rate;
   contact.load = bounded(std::max(0.0, push), contact.rate);
   return contact;
@@ -179,7 +182,8 @@ Vehicle::Contact Vehicle::corner_of(const VehicleBody& body, const glm::dmat3& R
 
 void Vehicle::add_corners(const VehicleBody& body, const glm::dmat3& R, const world::Ground& ground, double dt,
                           Wrench& sum) const {
-  for (unsigned k = 0; k < kCorners; ++k) {
+  // Those of the roof are above others that meet the ground, but for faces of cliffs.
+  for (unsigned k = 0; k < (R[2].z > kUpright ? kCorners / 2 : kCorners); ++k) {
     const Contact corner = corner_of(body, R, k, ground, dt);
     if (corner.load == 0.0) continue;
     const glm::dvec3 v = body.v + glm::cross(body.w, corner.p);
