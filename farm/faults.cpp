@@ -78,6 +78,11 @@ void check_element(const Fault& fault, const sensors::SensorSpec& row, std::uint
                                     row.elements - 1));
 }
 
+/// @param row of cameras
+bool is_grey(const Group& group, const sensors::SensorSpec& row) {
+  return group.settings_as<sensors::CameraSettings>()[static_cast<std::size_t>(&row - group.rows.data())].mono;
+}
+
 std::int64_t nanoseconds_until(double seconds) {
   return seconds < 9e9 ? base::nanoseconds(seconds) : std::numeric_limits<std::int64_t>::max();
 }
@@ -193,7 +198,7 @@ Faults::Rule Faults::rule_of(std::uint32_t k, const Group& group, const sensors:
   const ColumnPlace column = column_of(fault, type, row, fault.column);
   rule.offset = column.offset, rule.width = column.width, rule.whole = column.whole;
   rule.is_range = column.is_range(row);
-  rule.is_color = type.id == sensors::kCamera && column.name == "rgb";
+  if (type.id == sensors::kCamera && column.name == "rgb") rule.channels = is_grey(group, row) ? 1 : 3;
   // Colours do not depend on an echo; all else of a beam does.
   const bool second = column.name.starts_with("second_");
   const ColumnPlace range = column_of(fault, type, row, second ? "second_range_m" : "");
@@ -258,11 +263,11 @@ double Faults::altered_color(const Rule& rule, double color, const base::Reading
                              std::uint32_t index) const {
   const auto before = static_cast<std::uint32_t>(color);
   std::uint32_t after = 0;
-  for (std::uint32_t channel = 0; channel < 3; ++channel) {
+  for (std::uint32_t channel = 0; channel < rule.channels; ++channel) {
     const double value = altered(rule, before >> (16 - 8 * channel) & 255u, reading, 3 * index + channel);
     after = after << 8 | static_cast<std::uint32_t>(std::clamp(std::round(value), 0.0, 255.0));
   }
-  return after;
+  return rule.channels == 1 ? 0x010101u * after : after;
 }
 
 /// @return whether a value was altered
@@ -277,7 +282,7 @@ bool Faults::alter_column(const Rule& rule, const base::ReadingBlock& reading, T
       if (std::isnan(value) || !echo) continue;
       const double before = value;
       const auto index = static_cast<std::uint32_t>(k);
-      value = rule.is_color ? altered_color(rule, value, reading, index) : altered(rule, value, reading, index);
+      value = rule.channels > 0 ? altered_color(rule, value, reading, index) : altered(rule, value, reading, index);
       if (rule.is_range) value = std::clamp(value, target.limits.min, target.limits.max);
       if (rule.whole) value = std::clamp(std::round(value), 0.0, 4294967295.0);
       any = any || value != before;

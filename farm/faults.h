@@ -59,7 +59,7 @@ class Faults {
     std::uint32_t other = 0;                  ///< swap: offset of the other column
     double sigma = 0.0;                       ///< noise: deviation to add
     bool whole = false;                       ///< the column is a count
-    bool is_color = false;                    ///< 0xRRGGBB, altered channel by channel
+    std::uint32_t channels = 0;               ///< of a colour, 0xRRGGBB: 3, or 1 if it is grey; 0: it is none
     bool is_range = false;                    ///< values stay within the sensor's limits
     std::optional<std::uint32_t> range = {};  ///< offset of the range whose beams without an echo stay
     // Stuck: the last reading that was not affected.

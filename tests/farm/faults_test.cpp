@@ -222,6 +222,7 @@ TEST(Faults, PixelsAndEchoesKeepTheLimitsOfRanges) {
       "model( pose [3 0 0 0] size [1 2 1] color \"red\" ) position( name \"bot\" size [0.2 0.2 0.4]\n"
       "camera( resolution [5 1] fov 90 range [0.5 8] normals 1 rgb 1 )\n"
       "camera( resolution [3 1] fov 20 range [4 8] )\n"
+      "camera( resolution [1 1] range [0.5 8] mono 1 )\n"
       "lidar( channels 1 fov_v [0 0] columns 4 range [0.5 8] intensity 1 ) )",
       {.sensors = sensors::world_file_words()});
   const auto values = [&](std::vector<Fault> faults, std::size_t reading) {
@@ -262,6 +263,8 @@ TEST(Faults, PixelsAndEchoesKeepTheLimitsOfRanges) {
       changed += (static_cast<std::uint32_t>(noisy[i]) & channel) != (static_cast<std::uint32_t>(clean[i]) & channel);
     EXPECT_GE(changed, 2) << "each channel has its own noise";
   }
+  const Values grey = values({fault("camera", -7.0, "rgb", 2)}, near + 1), was_grey = values({}, near + 1);
+  EXPECT_EQ(grey[1], was_grey[1] - 0x070707);
   EXPECT_EQ(values({fault("camera", 1.0, "", 1)}, near), (Values{4.0, 4.0, 4.0})) << "too near";
   const Values echoes = values({fault("lidar", 0.5, "intensity")}, lidar), before = values({}, lidar);
   for (std::size_t i = 0; i < 4; ++i)

@@ -23,11 +23,11 @@ struct PlayedCamera {
     std::vector<double> values;
     for (std::size_t i = 0; i < 1600; ++i) values.insert(values.end(), {1.0, color_of(i, sequence)});
     const base::ReadingBlock reading{.type = sensors::kCamera, .values = values};
-    return sensors::image_file(sensor_set, reading);
+    return sensors::image_file(sensor_set, reading).bytes;
   }
   void take_part(std::uint32_t sequence, std::uint32_t part, const std::string& of) {
     base::Bytes payload;
-    sensors::encode_image(of, part, payload);
+    sensors::encode_image({of}, part, payload);
     camera.take_part(sequence, payload);
   }
   /// @param without one part, or none
@@ -115,6 +115,25 @@ TEST(ReceivedCamera, InvalidFilesAreCounted) {
   EXPECT_FALSE(p.camera.newest());
   p.take_depths(11), p.take_image(11);
   p.expect_newest(11);
+}
+
+TEST(ReceivedCamera, ImagesMayBeGreyOrJpeg) {
+  for (const char* format : {"mono 1", "rgb 1 jpeg 95", "mono 1 jpeg 95"}) {
+    const world::World world = world_of("position( camera( resolution [40 40] " + std::string(format) + " ) )");
+    const sensors::SensorSet sensor_set(world);
+    std::vector<double> values;
+    for (int i = 0; i < 1600; ++i) values.insert(values.end(), {1.0, 0x606060});
+    const base::ReadingBlock reading{.type = sensors::kCamera, .values = values};
+    const sensors::ImageFile file = sensors::image_file(sensor_set, reading);
+    ASSERT_LE(file.bytes.size(), sensors::kImagePartBytes);
+    base::Bytes payload;
+    sensors::encode_image(file, 0, payload);
+    ReceivedCamera camera(sensor_set.settings_of<sensors::CameraSettings>(sensors::kCamera, 0)[0]);
+    camera.take_depths({.values = values});
+    camera.take_part(0, payload);
+    ASSERT_TRUE(camera.newest()) << format;
+    EXPECT_EQ(camera.newest()->values[1], 0x606060) << format;
+  }
 }
 
 // The world of `lane-camera`: without the images it stands still.
