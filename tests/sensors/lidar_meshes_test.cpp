@@ -226,8 +226,8 @@ TEST_F(LidarMeshes, ChangedSizesScaleMeshes) {
         "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 1 4 3 2\n");
   write("m.mtl", "newmtl dark\nKd 0.1\n");
   const auto world_with = [&](const std::string& size) {
-    return world_of("model( name \"tag1\" pose [2 0.3 0.1 20] origin [0.1 0.2 0 30] size " + size + " mesh \"" +
-                    path("tent.obj") + "\" model( size [0.1 0.1 1.5] mesh \"" + path("tent.obj") +
+    return world_of("model( name \"tag1\" stack_children 0 pose [2 0.3 0.1 20] origin [0.1 0.2 0 30] size " + size +
+                    " mesh \"" + path("tent.obj") + "\" model( size [0.1 0.1 1.5] mesh \"" + path("tent.obj") +
                     "\" ) )\nposition( name \"r1\" lidar( channels 24 fov_v [-40 40] columns 240 range [0 20] "
                     "intensity 1 size [0 0 1] ) )\n");
   };
