@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -65,6 +66,14 @@ void make_pioneer(VehicleModel& m) {
   m.box = {0.313, 0.2525, 0.28}, m.turn_factor = 1.6;
 }
 
+/// Rounds a limit > 0 to three digits, so that it holds as written.
+double written(double limit, bool up) {
+  double unit = 1.0;
+  while (limit >= 1000.0 * unit) unit *= 10.0;
+  while (limit < 100.0 * unit) unit /= 10.0;
+  return unit * (up ? std::ceil(limit / unit) : std::floor(limit / unit));
+}
+
 /// Throws unless the wheels turn more easily than the car moves.
 void require_light_wheels(const VehicleModel& m, const std::string& at) {
   const CarModel& car = m.car;
@@ -72,8 +81,8 @@ void require_light_wheels(const VehicleModel& m, const std::string& at) {
   if (car.mass < least)
     throw base::InputError(
         fmt::format("{}'dynamics': a car of {:g} kg is too light for the wheels of its preset; "
-                    "expected at least {:.3g} kg: choose a smaller preset",
-                    at, car.mass, least));
+                    "expected at least {:g} kg: choose a smaller preset",
+                    at, car.mass, written(least, true)));
 }
 
 /// Throws unless springs and dampers are soft enough for kVehicleStep.
@@ -87,9 +96,8 @@ void require_stable(const VehicleModel& m, const std::string& at) {
   if (m.spring > spring || m.damper > damper)
     throw base::InputError(
         fmt::format("{}'dynamics': springs of {:g} N/m and dampers of {:g} N s/m are too stiff for this car of {:g} "
-                    "kg; expected at "
-                    "most {:.3g} N/m and {:.3g} N s/m",
-                    at, m.spring, m.damper, car.mass, spring, damper));
+                    "kg; expected at most {:g} N/m and {:g} N s/m",
+                    at, m.spring, m.damper, car.mass, written(spring, false), written(damper, false)));
 }
 
 /// Throws unless the car stands on its springs: without bump stops, leaning by less than they compress.
@@ -105,8 +113,8 @@ void require_standing(const VehicleModel& m, const std::string& at) {
   if (m.spring < least)
     throw base::InputError(fmt::format(
         "{}'dynamics': springs of {:g} N/m are too soft for this car of {:g} kg, whose centre of gravity is "
-        "{:g} m high; expected at least {:.3g} N/m: set 'spring', and 'damper' in proportion",
-        at, m.spring, car.mass, car.height, least));
+        "{:g} m high; expected at least {:g} N/m: set 'spring', and 'damper' in proportion",
+        at, m.spring, car.mass, car.height, written(least, true)));
 }
 
 }  // namespace

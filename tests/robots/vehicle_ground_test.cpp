@@ -208,7 +208,7 @@ TEST(VehicleGround, RefusesCarsThatCannotStand) {
     mover.dynamics = {"car", std::move(settings), ""};
     return refusal_of([&] { vehicle_of(mover); });
   };
-  expect_in("too soft for this car of 40000 kg, whose centre of gravity is 2 m high; expected at least 2.94e+05 N/m",
+  expect_in("too soft for this car of 40000 kg, whose centre of gravity is 2 m high; expected at least 295000 N/m",
             refusal({{"mass", "40000"}, {"height", "2"}}));
   EXPECT_EQ(refusal({{"mass", "40000"}, {"height", "2"}, {"spring", "295000"}}), "");
   expect_in("4 m high, above the body; expected at most 3.5 m", refusal({{"height", "4"}, {"spring", "60000"}}));
