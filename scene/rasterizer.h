@@ -10,7 +10,8 @@
 // Errors in 32 bits, u = 2^-24, of a leaf whose centre has distance D, with radius r and R = D + r:
 // - corners relative to the sensor: 2 u R (their storage u r, the sensor's offset u D, the difference u R); edges as
 //   vectors: u (2 r + L), L the longest; hence e: u R (2 r + 4 L) + u |e|;
-// - directions after rotation into the mesh's frame: 8.7 u; e . d in addition: 3 u |e|. In all
+// - directions after rotation into the mesh's frame, or e and n / h into the sensor's: 8.7 u; e . d in addition:
+//   3 u |e|. In all
 //   |error of e . d| <= u (R (2 r + 6 L) + 14 |e|), with two units of u R L to spare for machines without fused
 //   products;
 // - h: 6 u R, of which n has u; the relative error of 1 / t from it is B = 6 u R / |h|, at most 1.34 B above or below

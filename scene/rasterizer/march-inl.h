@@ -72,6 +72,7 @@ void Marching::begin(const FieldView& view, const Horizon& horizon, const BeamTi
                      const Floats& end) {
   view_ = &view, searches_ = 0, sure_ = upper_ = unsure_ = flagged_ = met_ = 0;
   std::fill_n(from_, kWidth, std::int8_t{0});
+  store(all(0), x_), store(all(0), y_);
   rotate(tile, first);
   const Floats zero = all(0.0f);
   if (!view.searchable || view.near) return void(unsure_ = (1u << kWidth) - 1);
@@ -108,15 +109,14 @@ void Marching::add(const Search& search, const FieldPoints& points, const Mask& 
 }
 
 void Marching::collect(const Search& search) {
-  const std::uint32_t sure = bits_of(search.found().sure), unsure = bits_of(search.found().unsure);
-  alignas(64) std::int32_t x[kWidth], y[kWidth];
-  alignas(64) float t[kWidth];
-  store(search.points().x, x), store(search.points().y + all(view_->field->bias), y), store(search.points().t, t);
-  for (std::uint32_t rest = sure | unsure; rest != 0; rest &= rest - 1) {
-    const auto i = static_cast<std::uint32_t>(__builtin_ctz(rest));
-    x_[i] = x[i], y_[i] = y[i], t_[i] = t[i];
-  }
-  sure_ |= sure, unsure_ |= unsure, upper_ |= bits_of(search.found().upper) & sure;
+  const Found& found = search.found();
+  const Mask known = either(found.sure, found.unsure);
+  const FieldPoints& at = search.points();
+  store(select(known, at.x, load(x_)), x_);
+  store(select(known, at.y + all(view_->field->bias), load(y_)), y_);
+  store(select(known, at.t, load(t_)), t_);
+  const std::uint32_t sure = bits_of(found.sure);
+  sure_ |= sure, unsure_ |= bits_of(found.unsure), upper_ |= bits_of(found.upper) & sure;
 }
 
 void Marching::decide(std::uint32_t i, double range) {
@@ -133,40 +133,41 @@ void Marching::decide(std::uint32_t i, double range) {
 
 /// Evaluates ranges in 64 bits, in the order of operations of FieldView::plane_of.
 std::uint32_t Marching::evaluate(double* ranges, std::uint32_t* hits) {
-  // Differences along x and along y of each triangle, and its cell's first corner.
-  alignas(64) double corner[kWidth] = {}, x[kWidth] = {}, y[kWidth] = {}, across[2][kWidth] = {}, along[2][kWidth] = {};
   const HeightField& field = *view_->field;
-  for (std::uint32_t rest = sure_; rest != 0; rest &= rest - 1) {
-    const auto i = static_cast<std::uint32_t>(__builtin_ctz(rest));
-    const bool upper = (upper_ >> i & 1) != 0;
-    const float* const a = field.heights.data() + field.at(x_[i], y_[i]);
-    const float *const row = a + (upper ? field.columns : 0), *const column = a + (upper ? 0 : 1);
-    corner[i] = *a, across[0][i] = row[0], across[1][i] = row[1];
-    along[0][i] = column[0], along[1][i] = column[field.columns];
-    x[i] = x_[i] - view_->base.x, y[i] = y_[i] - view_->base.y;
-  }
-  alignas(64) double t[kWidth], fall[kWidth];
+  const Ints x = load(x_), y = load(y_), row = y * all(field.columns) + x;
+  Floats a, b, d, e;
+  gather_pairs(field.heights.data(), row, a, b), gather_pairs(field.heights.data() + field.columns, row, d, e);
+  const Mask upper = mask_of(upper_);
+  // Differences along x and along y of each triangle, and its cell's first corner.
+  alignas(64) float corner[kWidth], across[2][kWidth], along[2][kWidth];
+  alignas(64) std::int32_t cell_x[kWidth], cell_y[kWidth];
+  store(a, corner), store(select(upper, d, a), across[0]), store(select(upper, e, b), across[1]);
+  store(select(upper, a, b), along[0]), store(select(upper, d, e), along[1]);
+  store(x - all(view_->base.x), cell_x), store(y - all(view_->base.y), cell_y);
+  constexpr hn::Rebind<float, decltype(kD)> kHalf;
+  constexpr hn::Rebind<std::int32_t, decltype(kD)> kHalfInts;
   const VD from_x = hn::Set(kD, view_->from.x), from_y = hn::Set(kD, view_->from.y), z = hn::Set(kD, view_->z);
+  const VD least_fall = hn::Set(kD, view_->error / kRangeError), zero = hn::Zero(kD);
+  std::uint32_t met = 0, shallow = 0;
   for (std::size_t i = 0; i < kWidth; i += hn::Lanes(kD)) {
     const auto at = [i](const double* v) { return hn::Load(kD, v + i); };
-    const VD slope_x = hn::Sub(at(across[1]), at(across[0])), slope_y = hn::Sub(at(along[1]), at(along[0]));
+    const auto height = [i](const float* v) { return hn::PromoteTo(kD, hn::Load(kHalf, v + i)); };
+    const auto place = [i](const std::int32_t* v) { return hn::PromoteTo(kD, hn::Load(kHalfInts, v + i)); };
+    const VD slope_x = hn::Sub(height(across[1]), height(across[0])),
+             slope_y = hn::Sub(height(along[1]), height(along[0]));
     const VD rise = hn::Add(hn::Mul(slope_x, at(rays_.x)), hn::Mul(slope_y, at(rays_.y)));
-    const VD place = hn::Add(hn::Mul(slope_x, hn::Sub(from_x, at(x))), hn::Mul(slope_y, hn::Sub(from_y, at(y))));
+    const VD under =
+        hn::Add(hn::Mul(slope_x, hn::Sub(from_x, place(cell_x))), hn::Mul(slope_y, hn::Sub(from_y, place(cell_y))));
     const VD sinks = hn::Sub(rise, at(rays_.z));
-    hn::Store(hn::Div(hn::Sub(z, hn::Add(at(corner), place)), sinks), kD, t + i);
-    hn::Store(hn::Abs(sinks), kD, fall + i);
+    const VD t = hn::Div(hn::Sub(z, hn::Add(height(corner), under)), sinks);
+    const VD range = hn::IfThenElse(t < zero, zero, t), before = at(ranges);
+    const auto nearer = hn::And(range < before, hn::LoadMaskBits(kD, bytes_of(sure_ >> i).data()));
+    hn::Store(hn::IfThenElse(nearer, range, before), kD, ranges + i);
+    met |= double_bits_of(nearer) << i, shallow |= double_bits_of(hn::Abs(sinks) < least_fall) << i;
   }
-  const double least_fall = view_->error / kRangeError;
-  std::uint32_t flags = flagged_ & ~sure_;
-  for (std::uint32_t rest = sure_; rest != 0; rest &= rest - 1) {
-    const auto i = static_cast<std::uint32_t>(__builtin_ctz(rest));
-    const double range = std::max(t[i], 0.0);
-    if (!(range < ranges[i])) continue;
-    ranges[i] = range, hits[i] = base::kFloorHit;
-    met_ |= 1u << i;
-    flags |= (flagged_ & 1u << i) | std::uint32_t{fall[i] < least_fall} << i;
-  }
-  return flags;
+  met_ = met;
+  store(select(mask_of(met), all(base::kFloorHit), load(hits)), hits);
+  return (flagged_ & ~sure_) | (met & (flagged_ | shallow));
 }
 
 std::uint32_t Marching::finish(double* ranges, std::uint32_t* hits, ScanCounts& counts) {

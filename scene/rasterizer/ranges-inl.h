@@ -15,6 +15,12 @@ namespace sf::scene::HWY_NAMESPACE {
 constexpr hn::CappedTag<double, kWidth> kD;
 using VD = hn::Vec<decltype(kD)>;
 
+HWY_INLINE std::uint32_t double_bits_of(const hn::Mask<decltype(kD)>& m) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(kD, m, bytes);
+  return bytes[0];
+}
+
 HWY_INLINE bool are_all(const std::uint32_t* faces, std::uint32_t face) {
   return bits_of(equal(load(faces), all(face))) == (1u << kWidth) - 1;
 }
@@ -33,9 +39,7 @@ HWY_INLINE std::uint32_t evaluate(const BeamTile& tile, std::uint32_t first, dou
     const VD sine = hn::Add(along, hn::Mul(plane.z, hn::Load(kD, tile.dz + first + i)));
     hn::Store(sine, kD, sines + i);
     hn::Store(hn::Min(hn::Div(plane.height, hn::Add(sine, plane.extra)), most), kD, out + i);
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(kD, hn::Abs(sine) < plane.least_sine, bits);
-    grazing |= std::uint32_t{bits[0]} << i;
+    grazing |= double_bits_of(hn::Abs(sine) < plane.least_sine) << i;
   }
   return grazing;
 }
@@ -77,8 +81,7 @@ HWY_INLINE std::uint32_t evaluate_several(const BeamTile& tile, std::uint32_t fi
     rest &= ~same;
     owners = select(meets, all(plane.owner), owners);
     for (std::size_t p = 0; p < kWidth / kLanesD; ++p) {
-      const std::uint8_t bits[8] = {static_cast<std::uint8_t>(same >> (p * kLanesD))};
-      const auto mask = hn::LoadMaskBits(kD, bits);
+      const auto mask = hn::LoadMaskBits(kD, bytes_of(same >> (p * kLanesD)).data());
       const auto put = [&](double value, VD& to) { to = hn::IfThenElse(mask, hn::Set(kD, value), to); };
       put(plane.normal.x, rows[p].x), put(plane.normal.y, rows[p].y), put(plane.normal.z, rows[p].z);
       put(plane.height, rows[p].height), put(none ? 1.0 : 0.0, rows[p].extra),
@@ -97,9 +100,7 @@ HWY_INLINE void to_depths(const BeamTile& tile, std::uint32_t first, double dept
   std::uint32_t beyond = 0;
   for (std::size_t i = 0; i < kWidth; i += hn::Lanes(kD)) {
     const VD depth = hn::Mul(hn::Load(kD, ranges + i), hn::Load(kD, tile.dx + first + i));
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(kD, depth >= most, bits);
-    beyond |= std::uint32_t{bits[0]} << i;
+    beyond |= double_bits_of(depth >= most) << i;
     hn::Store(hn::Min(depth, most), kD, ranges + i);
   }
   for (; beyond != 0; beyond &= beyond - 1) hits[__builtin_ctz(beyond)] = base::kNoHit;

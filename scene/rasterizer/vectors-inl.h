@@ -8,6 +8,7 @@
 #endif
 
 #include <hwy/highway.h>
+#include <array>
 
 #include "scene/rasterizer/scratch.h"
 
@@ -115,6 +116,15 @@ HWY_INLINE std::uint32_t bits_of(const Mask& m) {
     hn::StoreMaskBits(kF, m.part[p], bytes);
     out |= (std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8) << (p * kLanes);
   }
+  return out;
+}
+/// The first bits, for hn::LoadMaskBits.
+HWY_INLINE std::array<std::uint8_t, 8> bytes_of(std::uint32_t bits) {
+  return {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8)};
+}
+HWY_INLINE Mask mask_of(std::uint32_t bits) {
+  Mask out;
+  for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::LoadMaskBits(kF, bytes_of(bits >> (p * kLanes)).data());
   return out;
 }
 HWY_INLINE float least(const Floats& a) {
