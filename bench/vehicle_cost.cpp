@@ -30,7 +30,7 @@ world::World car_park(std::uint32_t cars, bool hills) {
   for (std::uint32_t k = 0; k < cars; ++k) {
     world::Mover& mover =
         scenes::add_mover(world, {50.0 * (k % side), 50.0 * std::floor(k / side)}, scenes::rectangle({}, 4.2, 1.7));
-    for (world::Segment& side : mover.body) side.z_max = 1.4;
+    for (world::Segment& s : mover.body) s.z_max = 1.4;
     mover.drive = world::Drive::car, mover.wheelbase = 2.39268, mover.track = 1.4, mover.max_forward = 30.0;
     mover.dynamics = {"car", {}, ""};
   }
