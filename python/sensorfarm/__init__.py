@@ -69,7 +69,8 @@ def _images(self, kind="depth", type="camera", robot=None, sensor=0):
 
     if kind == "labels":
         return of(self.hits(type)[part, :pixels].reshape(shape))
-    images = values[part, :pixels].reshape(*shape, -1)
+    images = values[part, :pixels]
+    images = images.reshape(len(images), *shape[1:], -1)
     if kind == "depth":
         return of(images[..., 0])
     if kind == "colour" and columns > 1:
