@@ -17,7 +17,6 @@ namespace sf::sensors {
 
 /// Settings of one laser.
 struct LaserSettings : raycast::ScanSettings {
-  base::Tilt tilt;            ///< of the mount (`pose6`): X_MS and this are the sensor in the mover's frame
   double rate = 10.0;         ///< [Hz] > 0
   double phase = 0.0;         ///< [s] time of the first reading
   double latency = 0.0;       ///< [s] from measurement to delivery
@@ -25,6 +24,7 @@ struct LaserSettings : raycast::ScanSettings {
   std::uint8_t priority = 5;  ///< as SensorSpec::priority
   world::Accuracy accuracy;
   std::uint32_t color = 0xFF0000FFu;  ///< 0xAARRGGBB, of the field of view in figures
+  base::Tilt tilt = {};               ///< of the mount (`pose6`): X_MS and this are the sensor in the mover's frame
 };
 
 /// Keys of a laser, in addition to the common ones.

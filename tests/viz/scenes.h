@@ -46,8 +46,8 @@ inline world::Mover make_robot(world::World& world, std::uint32_t id, const Pose
   mover.X_WM = X_WM;
   mover.radius = 0.165;
   for (int i = 0; i < 16; ++i)
-    mover.body.push_back({base::rotate(i * M_PI / 8, {0.165, 0.0}), base::rotate((i + 1) * M_PI / 8, {0.165, 0.0}), 0.0,
-                          0.1, mover.model, true, true, true});
+    mover.body.push_back({base::rotate(i * M_PI / 8, {0.165, 0.0}), base::rotate((i + 1) % 16 * M_PI / 8, {0.165, 0.0}),
+                          0.0, 0.1, mover.model, true, true, true});
   sensors::LaserSettings laser;
   laser.X_MS = {0.1, 0.0, 0.1, 0.0};
   laser.range_max = range_max;

@@ -127,7 +127,7 @@ TEST(VtkFiles, ScanDotsAreAtBeamEnds) {
   EXPECT_EQ(data->GetNumberOfVerts(), 3);
   ASSERT_EQ(data->GetNumberOfPoints(), 3);
   EXPECT_NEAR(data->GetPoint(1)[0], 1.0, 1e-12);
-  EXPECT_NEAR(data->GetPoint(1)[1], 3.0, 1e-12);
+  EXPECT_NEAR(data->GetPoint(1)[1], 3.0 + laser.X_MS.x, 1e-12);
   EXPECT_EQ(data->GetPoint(1)[2], 0.2 + laser.X_MS.z);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(number(data->GetPointData(), "range", i), ranges[i]);
   EXPECT_EQ(number(data->GetPointData(), "hit", 1), 7.0);
