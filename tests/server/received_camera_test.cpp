@@ -17,7 +17,9 @@ world::World world_of(const std::string& text) {
 struct PlayedCamera {
   /// Each pixel's colour depends on its place and the reading.
   static double color_of(std::size_t pixel, std::uint32_t sequence) {
-    return static_cast<double>((2654435761u * static_cast<std::uint32_t>(pixel + 1) + sequence) & 0xFFFFFFu);
+    std::uint32_t x = 2654435761u * static_cast<std::uint32_t>(pixel + 1) + sequence;
+    x = (x ^ x >> 15) * 2246822519u;  // noise, which PNG cannot compress
+    return static_cast<double>((x ^ x >> 13) & 0xFFFFFFu);
   }
   std::string file(std::uint32_t sequence) const {
     std::vector<double> values;
