@@ -114,8 +114,9 @@ TEST(ExportClouds, NeedTheRecordedTableOfDirections) {
   const Folder folder;
   const std::string table = "azimuth_deg,elevation_deg\n0,0\n20,5\n";
   folder.write("t.csv", table);
-  run_successfully({"run", folder.write("w.world", "position( lidar( directions \"t.csv\" ) )"), "--duration", "0.2",
-                    "--record", folder.path("r"), "--record-readings"});
+  const std::string world = "position( lidar( directions \"" + folder.path("t.csv") + "\" ) )";
+  run_successfully(
+      {"run", folder.write("w.world", world), "--duration", "0.2", "--record", folder.path("r"), "--record-readings"});
   const auto clouds = [&] {
     return run_program({"export", folder.path("r"), "--clouds", "ply", "-o", folder.path("c")});
   };
