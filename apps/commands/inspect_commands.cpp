@@ -117,12 +117,10 @@ void warn_of_pose(const world::World& world, const world::Mover& robot, const ba
 
 /// Warns of labels that 16 bits cannot state.
 void warn_of_labels(const base::ReadingBlock& reading) {
-  const auto beyond = std::ranges::count_if(reading.hits, [](std::uint32_t hit) {
-    return hit != base::kNoHit && hit != base::kFloorHit && hit > kLargestLabel - 2;
-  });
+  const std::uint64_t beyond = labels_beyond(reading);
   if (beyond > 0)
     print_message("warning: {} show models whose number exceeds {}, so their label is {} too; --json names them",
-                  counted(static_cast<std::uint64_t>(beyond), "pixel"), kLargestLabel - 2, kLargestLabel);
+                  counted(beyond, "pixel"), kLargestLabel - 2, kLargestLabel);
 }
 
 void write_image(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading,

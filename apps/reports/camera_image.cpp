@@ -58,4 +58,10 @@ std::string camera_file(const sensors::CameraSettings& camera, const base::Readi
   return base::color_file(reading.values, camera.columns(), format);
 }
 
+std::uint64_t labels_beyond(const base::ReadingBlock& reading) {
+  return static_cast<std::uint64_t>(std::ranges::count_if(reading.hits, [](std::uint32_t hit) {
+    return hit != base::kNoHit && hit != base::kFloorHit && hit > kLargestLabel - 2;
+  }));
+}
+
 }  // namespace sf::apps

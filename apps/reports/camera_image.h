@@ -24,4 +24,7 @@ bool is_jpeg(const std::string& file);
 std::string camera_file(const sensors::CameraSettings& camera, const base::ReadingBlock& reading, ImageKind kind,
                         bool jpeg);
 
+/// Returns the number of pixels that show models whose label would exceed kLargestLabel.
+std::uint64_t labels_beyond(const base::ReadingBlock& reading);
+
 }  // namespace sf::apps
