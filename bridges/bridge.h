@@ -104,7 +104,7 @@ struct RunState {
 class Bridge {
  public:
   virtual ~Bridge() = default;
-  /// Receives the intents of robots, before `publish` of the tick in which they were decided. Copies what it needs.
+  /// Shows the robots' intents of one tick. Called before `publish` of the same tick. Copies the intents.
   /// @param intents by row of the mover
   virtual void show_intents(std::span<const base::Intent> /*intents*/) {}
   /// Publishes one tick. Times restart at 0 after a reset (`RunState::runs`). Copies what it needs and never blocks.

@@ -182,7 +182,7 @@ Vehicle::Contact Vehicle::corner_of(const VehicleBody& body, const glm::dmat3& R
 
 void Vehicle::add_corners(const VehicleBody& body, const glm::dmat3& R, const world::Ground& ground, double dt,
                           Wrench& sum) const {
-  // Those of the roof are above others that meet the ground, but for faces of cliffs.
+  // In an upright car, the corners of the roof touch nothing but cliffs.
   for (unsigned k = 0; k < (R[2].z > kUpright ? kCorners / 2 : kCorners); ++k) {
     const Contact corner = corner_of(body, R, k, ground, dt);
     if (corner.load == 0.0) continue;

@@ -70,7 +70,7 @@ void change_camera(world::Sensor& camera, std::string_view keys) {
   }
 }
 
-/// The place beside the course, with its distance on the left.
+/// Projects a point onto the course. `left` of the result is the signed distance to the curve, positive on the left.
 world::CurvePlace place_on(const world::Curve& curve, glm::dvec2 p) {
   world::CurvePlace place = world::place_beside(curve.points, curve.s, p);
   place.left = std::copysign(place.away, place.left);

@@ -1,5 +1,6 @@
 #pragma once
-// A picture of `lane-camera` at work: the camera's image with the lane drawn over it, beside the rectified ground.
+// Draws the lane that `lane-camera` detects: over the camera's image on the left, over the rectified ground on the
+// right.
 
 #include <string>
 

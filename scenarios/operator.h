@@ -44,7 +44,7 @@ class Operator {
   bridges::WorldChange take_world();
   void pause() { state_.paused = true; }
 
-  /// Returns whether there are bridges, which show what is published.
+  /// Returns true if at least one bridge publishes the run.
   bool is_watched() const { return !bridges_.empty(); }
   std::uint32_t resets() const { return state_.runs; }
 

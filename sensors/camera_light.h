@@ -50,7 +50,7 @@ class CameraLight {
     std::array<std::uint32_t, scene::kTileVectors> dark;
     Lanes lanes;
   };
-  /// What a camera sees.
+  /// Projection of one camera.
   struct View {
     double depth_max = 0.0;  ///< [m] along the x axis: surfaces from there on are not seen
     float pixel = 0.0f;      ///< [sr] of a beam's part of the image; in a flat image, of one along the x axis

@@ -61,8 +61,8 @@ class SpatialScene {
   /// @param reach [m] longest range of a sensor
   SpatialScene(const world::World& world, double reach, const SceneExtras& extras = {});
 
-  /// Builds the bodies of all movers again. Meshes of movers that have another size are scaled, without coarser forms;
-  /// those of movers that have another shape are not seen.
+  /// Rebuilds the bodies of all movers. Scales the meshes of resized movers, which then have no coarser levels. Removes
+  /// the meshes of movers whose shape was replaced.
   void update_movers(const world::World& world);
   /// @param states per mover
   void place(std::span<const base::Report> states);

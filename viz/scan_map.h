@@ -28,10 +28,9 @@ class ScanMap {
   explicit ScanMap(const maps::GridGeometry& geometry);
 
   /// Adds a noise-free scan of `laser`, which is in this world, seen from above. A beam that ends on a mover, the floor
-  /// or terrain frees its cells. A range
-  /// beyond maps::kMaxRangeCells cells has no echo. An echo counts half a cell behind its range: the wall then gets a
-  /// cell that is mostly solid, regardless of rounding, and lines of cells, which deviate up to half a cell from their
-  /// beams, free no cell behind it.
+  /// or terrain frees its cells. A range beyond maps::kMaxRangeCells cells has no echo. An echo counts half a cell
+  /// behind its range: the wall then gets a cell that is mostly solid, regardless of rounding, and lines of cells,
+  /// which deviate up to half a cell from their beams, free no cell behind it.
   /// @param X_MS pose of the laser in the robot's frame (sensors::laser_mount)
   void add(const world::World& world, const sensors::SensorSpec& laser, const base::RigidTransform& X_MS,
            const base::ReadingBlock& scan);

@@ -4,9 +4,9 @@
 //   change_shape(world, mover, {.shape = "crate", .color = 0xFFFF0000u});
 //   change_shape(world, mover, {.shape = "original"});   // with its original size and colour
 //
-// Only the mover's own outline changes; what it carries keeps its place. A shape replaces the outline, and the mesh,
-// about the model's `origin`, with the height ranges, size and colour of the shape. A size scales the outline and the
-// mesh: the ratio of the sizes is exact for boxes, and rounded for others.
+// A change affects the mover's own outline, not the models and sensors on it. A new shape replaces the outline and the
+// mesh, and brings its own height ranges, size and colour; it keeps the model's `origin`. A new size scales the outline
+// and the mesh, by a factor that is exact for boxes and rounded for other outlines.
 
 #include <cstdint>
 #include <optional>

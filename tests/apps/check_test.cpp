@@ -40,7 +40,7 @@ std::string small_world(const Folder& folder) {
 
 }  // namespace
 
-/// What spatial sensors see: whether meshes are closed, or which triangles keep them open, and the terrain.
+/// `check` lists each mesh, the triangles that leave it open, and the size of the terrain.
 TEST(Check, MeshesAndTerrainAreExamined) {
   const Folder folder;
   folder.write("closed.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");

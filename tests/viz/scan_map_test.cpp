@@ -73,7 +73,7 @@ TEST(ScanMap, MoversLeaveNoMark) {
   EXPECT_EQ(map.states().at({4, 2}), Cell::free);
 }
 
-/// Nose down by 60 degrees, a beam of 6 m ends 3 m ahead. What it meets on the floor is free.
+/// With the robot pitched down by 60 degrees, a beam of 6 m ends 3 m ahead. Hits on the floor mark free cells.
 TEST(ScanMap, TiltedScansAreSeenFromAbove) {
   const world::World world = one_beam();
   for (const std::uint32_t met : {0u, base::kFloorHit}) {

@@ -169,7 +169,7 @@ TEST_F(Textures, CoordinatesThatAreNone) {
   }
 }
 
-/// Without a camera that has colours, nothing is read; a robot with one that is added reads what is there.
+/// Textures are loaded only for colour cameras: at once, or when the first robot with such a camera joins.
 TEST_F(Textures, AreReadForCamerasWithColours) {
   write("a.glb", glb_of({.picture = kPng}));
   World plain = world("a.glb", "camera( rgb 0 )");
