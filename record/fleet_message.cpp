@@ -24,17 +24,40 @@ bool is_tilted(const base::Report& report) { return !base::is_level(report.tilt)
 
 bool has_wheels(const base::Report& report) { return report.wheels.are_known() && !base::is_absent(report.X_WM); }
 
+/// Appends a sequence with the values, two numbers each, of the movers that `has` accepts.
+template <class Value>
+void put_values(CdrWriter& cdr, const base::TickRecord& record, bool (*has)(const base::Report&),
+                Value base::Report::*value) {
+  cdr.put_count(static_cast<std::size_t>(std::ranges::count_if(record.reports, has)));
+  for (const base::Report& report : record.reports) {
+    if (!has(report)) continue;
+    cdr.put(report.mover);
+    const auto& [first, second] = report.*value;
+    cdr.put(first), cdr.put(second);
+  }
+}
+
+template <class Value>
+bool decode_values(std::span<const std::uint8_t> message, MoverValues<Value>& sample) {
+  CdrReader cdr(message);
+  get_header(cdr, sample.time);
+  sample.movers.resize(cdr.get_count(sizeof(std::uint32_t) + sizeof(Value)));
+  bool finite = true;
+  for (auto& [mover, value] : sample.movers) {
+    auto& [first, second] = value;
+    mover = cdr.get<std::uint32_t>();
+    first = cdr.get<decltype(first)>(), second = cdr.get<decltype(second)>();
+    finite = finite && std::isfinite(first + second);
+  }
+  return cdr.good() && finite;
+}
+
 }  // namespace
 
 bool any_tilted(const base::TickRecord& record) { return std::ranges::any_of(record.reports, is_tilted); }
 
 void put_tilts(CdrWriter& cdr, const base::TickRecord& record) {
-  cdr.put_count(static_cast<std::size_t>(std::ranges::count_if(record.reports, is_tilted)));
-  for (const base::Report& report : record.reports) {
-    if (!is_tilted(report)) continue;
-    cdr.put(report.mover);
-    for (const double value : {report.tilt.roll, report.tilt.pitch}) cdr.put(value);
-  }
+  put_values(cdr, record, is_tilted, &base::Report::tilt);
 }
 
 void encode_tilts(const base::TickRecord& record, base::Bytes& out) {
@@ -43,45 +66,18 @@ void encode_tilts(const base::TickRecord& record, base::Bytes& out) {
   put_tilts(cdr, record);
 }
 
-bool decode_tilts(std::span<const std::uint8_t> message, TiltsSample& sample) {
-  constexpr std::size_t kLeastTilt = 20;  // [byte]
-  CdrReader cdr(message);
-  get_header(cdr, sample.time);
-  sample.tilts.resize(cdr.get_count(kLeastTilt));
-  bool finite = true;
-  for (MoverTilt& each : sample.tilts) {
-    each.mover = cdr.get<std::uint32_t>();
-    for (double* value : {&each.tilt.roll, &each.tilt.pitch}) *value = cdr.get<double>();
-    finite = finite && std::isfinite(each.tilt.roll + each.tilt.pitch);
-  }
-  return cdr.good() && finite;
-}
+bool decode_tilts(std::span<const std::uint8_t> message, TiltsSample& sample) { return decode_values(message, sample); }
 
 bool any_wheels(const base::TickRecord& record) { return std::ranges::any_of(record.reports, has_wheels); }
 
 void encode_wheels(const base::TickRecord& record, base::Bytes& out) {
   CdrWriter cdr(out);
   put_header(cdr, record.time, "world");
-  cdr.put_count(static_cast<std::size_t>(std::ranges::count_if(record.reports, has_wheels)));
-  for (const base::Report& report : record.reports) {
-    if (!has_wheels(report)) continue;
-    cdr.put(report.mover);
-    for (const float speed : {report.wheels.left, report.wheels.right}) cdr.put(speed);
-  }
+  put_values(cdr, record, has_wheels, &base::Report::wheels);
 }
 
 bool decode_wheels(std::span<const std::uint8_t> message, WheelsSample& sample) {
-  constexpr std::size_t kLeastWheels = 12;  // [byte]
-  CdrReader cdr(message);
-  get_header(cdr, sample.time);
-  sample.wheels.resize(cdr.get_count(kLeastWheels));
-  bool finite = true;
-  for (MoverWheels& each : sample.wheels) {
-    each.mover = cdr.get<std::uint32_t>();
-    for (float* speed : {&each.wheels.left, &each.wheels.right}) *speed = cdr.get<float>();
-    finite = finite && std::isfinite(each.wheels.left + each.wheels.right);
-  }
-  return cdr.good() && finite;
+  return decode_values(message, sample);
 }
 
 void encode_fleet(const base::TickRecord& record, base::Bytes& out) {

@@ -29,27 +29,20 @@ struct FleetState {
   std::vector<MoverState> states;
 };
 
-struct MoverTilt {
-  std::uint32_t mover = 0;
-  base::Tilt tilt;  ///< finite
+template <class Value>
+struct MoverValue {
+  std::uint32_t mover = 0;  ///< row in `RunInfo::movers`
+  Value value;              ///< finite
 };
 
-/// The tilts of all movers that are not level at one tick.
-struct TiltsSample {
+/// Values of some of the movers at one tick.
+template <class Value>
+struct MoverValues {
   std::int64_t time = 0;  ///< [ns] simulated
-  std::vector<MoverTilt> tilts;
+  std::vector<MoverValue<Value>> movers;
 };
-
-struct MoverWheels {
-  std::uint32_t mover = 0;
-  base::WheelSpeeds wheels;  ///< finite
-};
-
-/// The known speeds of wheels at one tick.
-struct WheelsSample {
-  std::int64_t time = 0;  ///< [ns] simulated
-  std::vector<MoverWheels> wheels;
-};
+using TiltsSample = MoverValues<base::Tilt>;          ///< of all movers that are not level
+using WheelsSample = MoverValues<base::WheelSpeeds>;  ///< of all movers whose speeds of wheels are known
 
 /// Returns whether a mover that is in the world is not level.
 bool any_tilted(const base::TickRecord& record);

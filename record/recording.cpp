@@ -81,28 +81,25 @@ bool read_fleet(const McapMessage& message, FleetState& fleet, Recording& record
   return true;
 }
 
-/// Adds the tilts to the states of their tick, which is the last one read, unless its states are damaged.
-bool read_tilts(const McapMessage& message, Recording& recording) {
-  TiltsSample sample;
-  if (!decode_tilts(message.data, sample)) return false;
-  for (const MoverTilt& each : sample.tilts) {
+/// Adds values to the states of their tick, which is the last one read, unless its states are damaged.
+template <class Value>
+bool add_values(const MoverValues<Value>& sample, Value StateSample::*value, Recording& recording) {
+  for (const MoverValue<Value>& each : sample.movers) {
     if (each.mover >= recording.states.size()) return false;
     auto& states = recording.states[each.mover];
-    if (!states.empty() && states.back().time == sample.time) states.back().tilt = each.tilt;
+    if (!states.empty() && states.back().time == sample.time) states.back().*value = each.value;
   }
   return true;
 }
 
-/// The same for the speeds of wheels.
+bool read_tilts(const McapMessage& message, Recording& recording) {
+  TiltsSample sample;
+  return decode_tilts(message.data, sample) && add_values(sample, &StateSample::tilt, recording);
+}
+
 bool read_wheels(const McapMessage& message, Recording& recording) {
   WheelsSample sample;
-  if (!decode_wheels(message.data, sample)) return false;
-  for (const MoverWheels& each : sample.wheels) {
-    if (each.mover >= recording.states.size()) return false;
-    auto& states = recording.states[each.mover];
-    if (!states.empty() && states.back().time == sample.time) states.back().wheels = each.wheels;
-  }
-  return true;
+  return decode_wheels(message.data, sample) && add_values(sample, &StateSample::wheels, recording);
 }
 
 /// Beams without a return are infinite in messages; in the run they may have been `range_max`.
