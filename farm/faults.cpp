@@ -12,8 +12,8 @@
 #include "base/random.h"
 #include "base/suggest.h"
 #include "base/time.h"
-#include "farm/own_noise.h"
 #include "sensors/camera.h"
+#include "sensors/sensor_set.h"
 
 namespace sf::farm {
 

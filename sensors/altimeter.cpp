@@ -2,12 +2,18 @@
 
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
+#include "sensors/triad_backend.h"
 
 namespace sf::sensors {
 
 namespace {
 
 constexpr double kMostHeight = 1e6;  // [m]
+
+struct Altimeter {
+  TriadInstrument instrument;
+  double datum = 0.0;  ///< [m] height in the world that reads 0
+};
 
 class Altimeters : public TriadBackend {
  public:
@@ -37,6 +43,10 @@ constexpr Column kColumns[] = {{"height_m"}};
 constexpr PlainNumber kNumbers[] = {{1e-3}};
 constexpr PlainForm kForm{kAltimeter, "altimeter", kNumbers};
 
+double noise_of_altimeter(const ParsedSensors& sensors, std::size_t row, std::uint32_t /*offset*/) {
+  return reading_noise(sensors.settings_as<Altimeter>()[row].instrument.errors, sensors.rows[row].rate);
+}
+
 }  // namespace
 
 constinit const SensorType altimeter_type = plain<kForm>({
@@ -44,6 +54,7 @@ constinit const SensorType altimeter_type = plain<kForm>({
     .base_port = 32000,
     .list = "",
     .columns = kColumns,
+    .noise = noise_of_altimeter,
     .parse = parse_altimeters,
     .make = make_backend<Altimeters>,
 });

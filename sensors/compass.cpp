@@ -79,6 +79,14 @@ constexpr PlainNumber kReal{.real = true};
 constexpr PlainNumber kNumbers[] = {kReal, kReal, kReal, kReal, {1e-6}};
 constexpr PlainForm kForm{kCompass, "compass", kNumbers};
 
+/// The noise of the strength is that of an axis, unless other errors distort it; that of the heading depends on the
+/// pose.
+double noise_of_compass(const ParsedSensors& sensors, std::size_t row, std::uint32_t offset) {
+  if (offset == 0) return sensors.rows[row].sigma;
+  if (offset > 3) return HUGE_VAL;
+  return reading_noise(sensors.settings_as<Compass>()[row].instrument.errors, sensors.rows[row].rate);
+}
+
 }  // namespace
 
 Compass read_compass(const world::Sensor& sensor, const glm::dvec3& earth, SensorSpec& row) {
@@ -96,6 +104,7 @@ constinit const SensorType compass_type = plain<kForm>({
     .base_port = 16000,
     .list = "",
     .columns = kColumns,
+    .noise = noise_of_compass,
     .parse = parse_compasses,
     .make = make_backend<Compasses>,
 });

@@ -59,6 +59,10 @@ constexpr Column kColumns[] = {{"rate_rad_s"}};
 constexpr PlainNumber kNumbers[] = {{1e-6}};
 constexpr PlainForm kForm{kGyro, "gyro", kNumbers};
 
+double noise_of_gyro(const ParsedSensors& sensors, std::size_t row, std::uint32_t /*offset*/) {
+  return sensors.settings_as<Gyro>()[row].noise;
+}
+
 }  // namespace
 
 GyroModel::GyroModel(const Gyro& gyro, const base::RandomKey& draw, bool noise) : draw_(draw), range_(gyro.range) {
@@ -93,6 +97,7 @@ constinit const SensorType gyro_type = plain<kForm>({
     .base_port = 46000,
     .list = "",
     .columns = kColumns,
+    .noise = noise_of_gyro,
     .parse = parse_gyros,
     .make = make_backend<Gyros>,
 });

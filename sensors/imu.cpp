@@ -257,6 +257,13 @@ constexpr PlainNumber kNumbers[] = {kReal, kReal, kReal, kReal, kReal, kReal, {1
                                     kReal, kReal, kReal, kReal};
 constexpr PlainForm kForm{kImu, "imu", kNumbers, kPlainNumbers};
 
+/// States that of the three rates and the three forces.
+double noise_of_imu(const ParsedSensors& sensors, std::size_t row, std::uint32_t offset) {
+  if (offset >= 6) return HUGE_VAL;
+  const Imu& imu = sensors.settings_as<Imu>()[row];
+  return reading_noise(offset < 3 ? imu.gyro : imu.accel, sensors.rows[row].rate);
+}
+
 }  // namespace
 
 Imu read_imu(const world::Sensor& sensor) {
@@ -282,6 +289,7 @@ constinit const SensorType imu_type = plain<kForm>({
     .base_port = 12000,
     .list = "",
     .columns = kColumns,
+    .noise = noise_of_imu,
     .parse = parse_imus,
     .make = make_backend<Imus>,
 });

@@ -37,6 +37,12 @@ constexpr Column kColumns[] = {{"roll_rad"}, {"pitch_rad"}, {"saturated", 1, tru
 constexpr PlainNumber kNumbers[] = {{1e-6}, {1e-6}, {1.0, 0.0, 3.0}};
 constexpr PlainForm kForm{kInclinometer, "inclinometer", kNumbers};
 
+/// Angles have noise; the word of those that saturated has none.
+double noise_of_inclinometer(const ParsedSensors& sensors, std::size_t row, std::uint32_t offset) {
+  if (offset >= 2) return HUGE_VAL;
+  return reading_noise(sensors.settings_as<TriadInstrument>()[row].errors, sensors.rows[row].rate);
+}
+
 }  // namespace
 
 constinit const SensorType inclinometer_type = plain<kForm>({
@@ -44,6 +50,7 @@ constinit const SensorType inclinometer_type = plain<kForm>({
     .base_port = 13000,
     .list = "",
     .columns = kColumns,
+    .noise = noise_of_inclinometer,
     .parse = parse_inclinometers,
     .make = make_backend<Inclinometers>,
 });

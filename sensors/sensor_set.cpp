@@ -61,4 +61,10 @@ std::size_t SensorSet::count_of(std::uint32_t mover) const {
   return sum;
 }
 
+double own_noise(const SensorSet::Group& group, const SensorSpec& row, std::uint32_t offset) {
+  if (group.type->noise != nullptr)
+    return group.type->noise(group, static_cast<std::size_t>(&row - group.rows.data()), offset);
+  return offset == 0 ? row.sigma : HUGE_VAL;
+}
+
 }  // namespace sf::sensors

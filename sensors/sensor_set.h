@@ -53,4 +53,9 @@ class SensorSet {
   std::vector<Group> groups_;
 };
 
+/// Returns the standard deviation of the noise of one number of an element [unit of its column], without errors that
+/// last, such as a bias; infinite: not stated.
+/// @param row of the group  @param offset index of the number in an element
+double own_noise(const SensorSet::Group& group, const SensorSpec& row, std::uint32_t offset);
+
 }  // namespace sf::sensors

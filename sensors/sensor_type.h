@@ -206,6 +206,11 @@ struct SensorType {
   /// readings.
   ErrorBound (*bound)(const world::World& world, const ParsedSensors& sensors, std::size_t row) = nullptr;
 
+  /// Returns the standard deviation of the noise of one number of an element (own_noise in sensors/sensor_set.h). Null:
+  /// SensorSpec::sigma for the first number, not stated for the others.
+  /// @param offset index of the number in an element
+  double (*noise)(const ParsedSensors& sensors, std::size_t row, std::uint32_t offset) = nullptr;
+
   /// Parses all sensors of this type. @throws base::InputError with file and line for invalid settings
   ParsedSensors (*parse)(const world::World& world);
   /// Creates the backend of a world with such sensors; null for derived types. @param sensors result of `parse`; must

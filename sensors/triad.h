@@ -27,6 +27,9 @@ double allan_variance(const TriadErrors& errors, double time);
 /// Returns the deviation of the error of readings over `interval` [s]; infinite if part of it lasts.
 double reading_deviation(const TriadErrors& errors, double interval);
 
+/// Returns the deviation of the white noise of readings at `rate` [Hz], without errors that last.
+inline double reading_noise(const TriadErrors& errors, double rate) { return errors.noise * std::sqrt(rate); }
+
 class Triad {
  public:
   /// Numbers of a reading, and bit i where axis i saturates.

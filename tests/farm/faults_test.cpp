@@ -9,7 +9,6 @@
 #include <map>
 
 #include "base/time.h"
-#include "farm/own_noise.h"
 #include "robots/fleet.h"
 #include "sensors/camera.h"
 #include "sensors/compass.h"
