@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <optional>
@@ -21,11 +20,6 @@ namespace {
 
 constexpr std::size_t kMostPlotsOfFigure = 24;
 constexpr std::size_t kMostOverlaid = 7;  ///< maximum number of lines in an additional figure of one plot
-
-std::optional<double> number_of(const std::string& text) {
-  const std::optional<double> value = base::number_of<double>(text);
-  return value && std::isfinite(*value) ? value : std::nullopt;
-}
 
 /// A parameter and its values.
 struct Parameter {
@@ -46,11 +40,12 @@ std::vector<Parameter> parameters_of(const SweepJobs& jobs) {
     for (const SweepPoint& point : jobs.points) {
       if (!seen.emplace(point.values[row], true).second) continue;
       p.values.push_back(point.values[row]);
-      p.numeric = p.numeric && number_of(point.values[row]);
+      p.numeric = p.numeric && base::finite_number(point.values[row]);
     }
     if (p.numeric)
-      std::sort(p.values.begin(), p.values.end(),
-                [](const std::string& a, const std::string& b) { return *number_of(a) < *number_of(b); });
+      std::sort(p.values.begin(), p.values.end(), [](const std::string& a, const std::string& b) {
+        return *base::finite_number(a) < *base::finite_number(b);
+      });
   }
   return all;
 }
@@ -192,7 +187,7 @@ class SweepPlotter {
   bool is_logarithmic(const std::string& file, const Parameter& x) const {
     if (!x.numeric || choice_.x_axis == viz::AxisScale::linear) return false;
     std::vector<double> values;
-    for (const std::string& text : x.values) values.push_back(*number_of(text));
+    for (const std::string& text : x.values) values.push_back(*base::finite_number(text));
     if (choice_.x_axis == viz::AxisScale::automatic) return viz::is_geometric(values);
     if (values.front() > 0.0) return true;
     throw base::InputError(file, 0,
@@ -225,7 +220,7 @@ class SweepPlotter {
 
   viz::IntervalPoint point_of(std::size_t metric, const Parameter& x, const SweepPoint& point) const {
     const Interval interval = interval_of(metric, point);
-    const double at = x.numeric ? *number_of(point.values[x.row]) : static_cast<double>(x.index_of(point));
+    const double at = x.numeric ? *base::finite_number(point.values[x.row]) : static_cast<double>(x.index_of(point));
     return {at, interval.mean, interval.low, interval.high};
   }
 

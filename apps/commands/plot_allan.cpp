@@ -129,11 +129,6 @@ struct TableColumn {
   std::vector<double> samples;
 };
 
-std::optional<double> finite_number(std::string_view text) {
-  const std::optional<double> value = base::number_of<double>(text);
-  return value && std::isfinite(*value) ? value : std::nullopt;
-}
-
 /// Returns the times first, then the columns whose first field is a number. Prints the names of the others.
 std::vector<TableColumn> columns_of(const std::string& file) {
   constexpr std::string_view kTime = "time_s";
@@ -154,14 +149,14 @@ std::vector<TableColumn> columns_of(const std::string& file) {
     }
     std::vector<std::string> texts;
     for (std::size_t i = 0; first && i < headings.size(); ++i)
-      if (!finite_number(record.field(i)))
+      if (!base::finite_number(record.field(i)))
         texts.push_back(headings[i]);
       else if (i != columns[0].place)
         columns.push_back({headings[i], i, {}});
     note_left_out("since they do not begin with a number", texts);
     first = false;
     for (TableColumn& column : columns) {
-      const std::optional<double> value = finite_number(record.field(column.place));
+      const std::optional<double> value = base::finite_number(record.field(column.place));
       if (!value)
         throw base::InputError(
             file, record.first_line(),

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
 #include "base/error.h"
 #include "base/number_text.h"
@@ -146,8 +145,7 @@ int StatementReader::whole(std::string_view text, int least, std::string_view wh
 double StatementReader::decimal(std::size_t i, std::string_view what) const {
   std::string_view text = field(i, what);
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-  const std::optional<double> value = base::number_of<double>(text);
-  if (value && std::isfinite(*value)) return *value;
+  if (const std::optional<double> value = base::finite_number(text)) return *value;
   fail(fmt::format("{} is {}; expected a number such as -77.205045", what, quoted(text)));
 }
 
