@@ -2,13 +2,14 @@
 // Colours: linear light and its 8-bit values in sRGB (IEC 61966-2-1).
 
 #include <cstdint>
+#include <glm/ext/vector_double3.hpp>
 #include <glm/ext/vector_float3.hpp>
 #include <span>
 
 namespace sf::base {
 
 /// Weights of linear red, green and blue in the luminance (Rec. 709).
-inline constexpr glm::vec3 kLuminance{0.2126f, 0.7152f, 0.0722f};
+inline constexpr glm::dvec3 kLuminance{0.2126, 0.7152, 0.0722};
 
 /// Linear red, green and blue in [0, 1] of 0xAARRGGBB.
 glm::vec3 linear_color(std::uint32_t color);

@@ -52,7 +52,7 @@ double error_of(const CameraSettings& s) { return s.mode == 0 ? scene::kRangeErr
 void make_grey(std::uint32_t beams, CameraLight::Lanes& lanes) {
   for (std::uint32_t k = 0; k < beams; ++k) {
     const glm::vec3 color(lanes.light[0][k], lanes.light[1][k], lanes.light[2][k]);
-    for (auto& light : lanes.light) light[k] = glm::dot(base::kLuminance, color);
+    for (auto& light : lanes.light) light[k] = glm::dot(glm::vec3(base::kLuminance), color);
   }
 }
 

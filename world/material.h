@@ -4,6 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/ext/vector_double3.hpp>
+#include <glm/geometric.hpp>
+
+#include "base/srgb.h"
 
 namespace sf::world {
 
@@ -31,6 +34,6 @@ struct TextureUse {
 };
 
 /// Luminance of a linear colour (Rec. 709), the reflectance of materials that state none.
-inline double luminance(const glm::dvec3& color) { return 0.2126 * color.x + 0.7152 * color.y + 0.0722 * color.z; }
+inline double luminance(const glm::dvec3& color) { return glm::dot(base::kLuminance, color); }
 
 }  // namespace sf::world
