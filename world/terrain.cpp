@@ -81,14 +81,16 @@ HeightMap read_height_map(const std::string& file, double lowest, double highest
   return decode_height_map(file, base::read_bytes(file, kMostBytes), lowest, highest);
 }
 
+glm::dvec2 size_of(const Terrain& terrain) { return terrain.cell * glm::dvec2(terrain.columns - 1, terrain.rows - 1); }
+
 Pose corner_of(const Terrain& terrain) {
-  const glm::dvec2 size = terrain.cell * glm::dvec2(terrain.columns - 1, terrain.rows - 1);
+  const glm::dvec2 size = size_of(terrain);
   return compose(terrain.X_WT, {-0.5 * size.x, -0.5 * size.y, 0.0, 0.0});
 }
 
 std::array<glm::dvec2, 4> outline_of(const Terrain& terrain) {
   const Pose X_WF = corner_of(terrain);
-  const glm::dvec2 size = terrain.cell * glm::dvec2(terrain.columns - 1, terrain.rows - 1);
+  const glm::dvec2 size = size_of(terrain);
   return {transform(X_WF, {0.0, 0.0}), transform(X_WF, {size.x, 0.0}), transform(X_WF, size),
           transform(X_WF, {0.0, size.y})};
 }
@@ -102,7 +104,7 @@ glm::dvec2 TerrainSurface::in_frame(glm::dvec2 p) const {
 }
 
 glm::dvec2 TerrainSurface::border(glm::dvec2 p) const {
-  const glm::dvec2 size = terrain_.cell * glm::dvec2(terrain_.columns - 1, terrain_.rows - 1), at = in_frame(p);
+  const glm::dvec2 size = size_of(terrain_), at = in_frame(p);
   glm::dvec2 nearest = glm::clamp(at, glm::dvec2{}, size);
   if (nearest == at) {
     const glm::dvec2 side{at.x < 0.5 * size.x ? 0.0 : size.x, at.y < 0.5 * size.y ? 0.0 : size.y};

@@ -34,6 +34,8 @@ HeightMap decode_height_map(const std::string& file, const std::string& bytes, d
 /// Throws base::InputError unless a height map of this size is within the limits.
 void require_height_map_size(const std::string& file, std::uint64_t columns, std::uint64_t rows);
 
+/// Returns the lengths of its sides [m], along the rows and the columns.
+glm::dvec2 size_of(const Terrain& terrain);
 /// Returns the frame of the first point, with x along the rows. z is that of height 0.
 Pose corner_of(const Terrain& terrain);
 /// Returns the corners of its rectangle [m], counter-clockwise in the world.

@@ -10,6 +10,7 @@
 #include "apps/reports/text.h"
 #include "scene/closed_bodies.h"
 #include "scene/solids.h"
+#include "world/terrain.h"
 
 namespace sf::apps {
 
@@ -105,9 +106,9 @@ std::string surfaces_text(const world::World& world) {
   if (reports.size() > kMostMeshRows) text += row("", "and {} more (--json lists all)", reports.size() - kMostMeshRows);
   for (const world::Terrain& terrain : world.terrain) {
     const auto [low, high] = std::ranges::minmax(terrain.heights);
-    text +=
-        row("terrain", "{}: {} x {} points, {:g} x {:g} m, heights from {:g} to {:g} m", terrain.file, terrain.columns,
-            terrain.rows, (terrain.columns - 1) * terrain.cell.x, (terrain.rows - 1) * terrain.cell.y, low, high);
+    const glm::dvec2 size = world::size_of(terrain);
+    text += row("terrain", "{}: {} x {} points, {:g} x {:g} m, heights from {:g} to {:g} m", terrain.file,
+                terrain.columns, terrain.rows, size.x, size.y, low, high);
   }
   return text;
 }

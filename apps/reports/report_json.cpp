@@ -17,6 +17,7 @@
 #include "sensors/camera.h"
 #include "sensors/laser.h"
 #include "sensors/magnetic_field/truncation.h"
+#include "world/terrain.h"
 
 namespace sf::apps {
 
@@ -279,9 +280,10 @@ Json terrain_json(const world::World& world) {
   Json rows = Json::array();
   for (const world::Terrain& terrain : world.terrain) {
     const auto [low, high] = std::ranges::minmax(terrain.heights);
+    const glm::dvec2 size = world::size_of(terrain);
     rows.push_back({{"file", terrain.file},
                     {"points", {terrain.columns, terrain.rows}},
-                    {"size_m", {(terrain.columns - 1) * terrain.cell.x, (terrain.rows - 1) * terrain.cell.y}},
+                    {"size_m", {size.x, size.y}},
                     {"heights_m", {low, high}}});
   }
   return rows;
