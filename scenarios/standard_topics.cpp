@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/elementary.h"
-#include "base/jpeg.h"
 #include "base/tilted_pose.h"
 #include "sensors/camera.h"
 #include "sensors/compass.h"
@@ -100,7 +99,7 @@ std::vector<Message> image_messages(record::ImageMessages images, bool rgb) {
 /// Quality of a camera's JPEG files; 0: PNG.
 int jpeg_of(const sensors::CameraSettings& camera, record::ImageMessages::Files files) {
   using Files = record::ImageMessages::Files;
-  if (files == Files::jpeg && camera.jpeg == 0) return base::kJpegQuality;
+  if (files == Files::jpeg) return camera.jpeg_quality();
   return files == Files::png ? 0 : camera.jpeg;
 }
 

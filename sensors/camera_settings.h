@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/camera_pixels.h"
+#include "base/jpeg.h"
 #include "base/lens.h"
 #include "base/rigid_transform.h"
 #include "sensors/lidar_beams.h"
@@ -38,6 +39,7 @@ struct CameraSettings {
   std::size_t columns() const { return normals ? 5 : rgb ? 2 : 1; }  ///< numbers per pixel: depth, colour, normal
   /// Returns whether the colour of a pixel is that of its one beam.
   bool is_plain() const { return samples == 1 && gain == 1.0 && vignetting == 0.0 && !is_noisy(); }
+  int jpeg_quality() const { return jpeg > 0 ? jpeg : base::kJpegQuality; }  ///< of files that are to be JPEG
   base::ColorFormat format() const { return {width, height, mono, jpeg}; }
   bool is_noisy() const { return read_noise > 0.0 || shot_noise > 0.0; }
 };

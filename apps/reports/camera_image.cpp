@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <vector>
 
-#include "base/jpeg.h"
 #include "base/marked_values.h"
 #include "base/png.h"
 
@@ -54,7 +53,7 @@ std::string camera_file(const sensors::CameraSettings& camera, const base::Readi
   if (kind == ImageKind::labels) return base::encode_png(labels_of(reading), width, height);
   if (kind == ImageKind::normals) return base::encode_png(normals_of(reading), width, height);
   base::ColorFormat format = camera.format();
-  format.jpeg = !jpeg ? 0 : camera.jpeg > 0 ? camera.jpeg : base::kJpegQuality;
+  format.jpeg = jpeg ? camera.jpeg_quality() : 0;
   return base::color_file(reading.values, camera.columns(), format);
 }
 
