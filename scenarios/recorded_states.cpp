@@ -3,34 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "base/error.h"
 #include "scenarios/foreign_sensors.h"
-#include "sensors/beam_table.h"
 #include "world/append_robot.h"
 #include "world/shapes.h"
 
 namespace sf::scenarios {
-
-namespace {
-
-/// Recordings refer to tables of directions, which may have changed since. Those of earlier versions have no hashes.
-void require_tables(const record::Recording& recording, const world::World& world) {
-  const auto& options = recording.info.options;
-  if (std::ranges::none_of(options, [](const auto& each) { return each.first.starts_with(sensors::kBeamTableOption); }))
-    return;
-  for (const auto& [file, hash] : sensors::beam_table_hashes(world)) {
-    const std::string_view recorded = record::option_of(recording.info, std::string(sensors::kBeamTableOption) + file);
-    if (!recorded.empty() && recorded != fmt::format("{:016x}", hash))
-      throw base::InputError(recording.file, 0,
-                             fmt::format("'{}' has changed since the run was recorded, which only refers to its "
-                                         "directions; restore the file",
-                                         file));
-  }
-}
-
-}  // namespace
 
 world::World recorded_world(const record::Recording& recording) {
   if (!record::option_of(recording.info, kTimeZero).empty()) add_foreign_types(recording.info);
@@ -47,7 +26,6 @@ world::World recorded_world(const record::Recording& recording) {
         recording.file, 0,
         fmt::format("has the states of {} movers, but its world has {}: the two do not belong together",
                     recording.states.size(), world.movers.size()));
-  require_tables(recording, world);
   return world;
 }
 

@@ -10,7 +10,6 @@
 #include "scenarios/standard_topics.h"
 #include "scenarios/world_shape.h"
 #include "sensors/accuracy.h"
-#include "sensors/beam_table.h"
 #include "sensors/laser_modes.h"
 
 namespace sf::scenarios {
@@ -95,8 +94,6 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
   info.accuracy = accuracy_rows(world, sensor_set, settings.noise);
   if (settings.too_near_min) info.options.emplace_back(record::kTooNear, "min");
   if (!settings.faults.empty()) info.options.emplace_back(record::kFaultsOption, settings.faults);
-  for (const auto& [file, hash] : sensors::beam_table_hashes(world))
-    info.options.emplace_back(std::string(sensors::kBeamTableOption) + file, fmt::format("{:016x}", hash));
   record::put_naming(settings.naming, info);
   info.snapshot = world::snapshot(world);
   info.joined = settings.joined;

@@ -41,6 +41,7 @@ std::vector<SpatialScanner> scanners_of(const std::vector<CameraSettings>& camer
                         .normals = s.normals,
                         .materials = s.rgb,
                         .follows = s.rgb,
+                        .textures = s.rgb,
                         .single = s.mode != 0,
                         .depth_max = s.range_max});
   return scanners;

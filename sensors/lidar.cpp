@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "base/elementary.h"
@@ -13,6 +14,7 @@
 #include "sensors/lidar_echoes.h"
 #include "sensors/lidar_modes.h"
 #include "sensors/lidar_packets.h"
+#include "sensors/road_paint.h"
 #include "sensors/settings.h"
 #include "sensors/spatial_scans.h"
 
@@ -27,6 +29,8 @@ class Lidars : public SpatialScans {
   void collect(std::span<base::ReadingBlock> out) override;
 
  private:
+  void follow(std::size_t sample, const base::RigidTransform& X_WS, const scene::BeamTile& tile,
+              const scene::TileSurfaces& surfaces, unsigned thread) override;
   void finish(std::size_t sample, unsigned thread) override;
   void add_noise(std::size_t sample);
   void find_echoes(std::size_t sample, unsigned thread);
@@ -34,7 +38,9 @@ class Lidars : public SpatialScans {
   const std::vector<LidarSettings>& settings_;
   bool noise_;
   Reflectances reflectances_;
-  std::vector<EchoFinder> finders_;  ///< per thread
+  std::optional<RoadPaint> paint_;             ///< nullopt: no lidar depends on it
+  std::vector<std::uint32_t> part_materials_;  ///< of lidars that do, with Reflectances::kPaint
+  std::vector<EchoFinder> finders_;            ///< per thread
 };
 
 bool is_coarse(const LidarSettings& s) { return kLidarAngles[s.mode] > 0.0; }
@@ -51,28 +57,48 @@ bool is_plain(const LidarSettings& s) {
          s.echo.dropout == 0.0;
 }
 
-std::vector<SpatialScanner> scanners_of(const std::vector<LidarSettings>& lidars) {
+/// True if a reading depends on the power of echoes.
+bool has_powers(const LidarSettings& s) {
+  return s.echo.width > 1 || s.beams->parts > 1 || s.echo.detection_range > 0.0;
+}
+
+std::vector<SpatialScanner> scanners_of(const world::World& world, const std::vector<LidarSettings>& lidars) {
   std::vector<SpatialScanner> scanners;
-  for (const LidarSettings& s : lidars) {
-    const bool powers = s.echo.width > 1 || s.beams->parts > 1 || s.echo.detection_range > 0.0;
+  for (const LidarSettings& s : lidars)
     scanners.push_back({.X_MS = s.X_MS,
                         .range_max = s.echo.range_max,
                         .angle = kLidarAngles[s.mode],
                         .beams = s.beams,
                         .plain = is_plain(s),
                         .cosines = !is_plain(s),
-                        .materials = powers,
+                        .materials = has_powers(s),
+                        .follows = has_powers(s) && !world.lane_markings.empty(),
                         .single = kLidarSingle[s.mode]});
-  }
   return scanners;
 }
 
 Lidars::Lidars(const SensorContext& context, const ParsedSensors& sensors)
-    : SpatialScans(context, lidar_type, sensors, scanners_of(sensors.settings_as<LidarSettings>())),
+    : SpatialScans(context, lidar_type, sensors, scanners_of(context.world, sensors.settings_as<LidarSettings>())),
       settings_(sensors.settings_as<LidarSettings>()),
       noise_(context.noise),
       reflectances_(context.world, materials()),
-      finders_(context.thread_pool.threads()) {}
+      finders_(context.thread_pool.threads()) {
+  if (context.world.lane_markings.empty() || std::ranges::none_of(settings_, has_powers)) return;
+  paint_.emplace(context.world);
+  part_materials_.resize(parts());
+}
+
+/// Keeps the materials that a tile's beams meet, and paint where they meet the ground.
+void Lidars::follow(std::size_t i, const base::RigidTransform& X_WS, const scene::BeamTile& tile,
+                    const scene::TileSurfaces& surfaces, unsigned) {
+  const auto out = parts_of(part_materials_, i);
+  for (std::uint32_t k = 0; k < tile.used * scene::kWidth; ++k) {
+    const glm::dvec3 beam = surfaces.ranges[k] * glm::dvec3(tile.dx[k], tile.dy[k], tile.dz[k]);
+    const bool painted =
+        surfaces.hits[k] == base::kFloorHit && paint_->color_at(base::transform(X_WS, beam)) != nullptr;
+    out[tile.place[k]] = painted ? Reflectances::kPaint : surfaces.materials[k];
+  }
+}
 
 void Lidars::finish(std::size_t i, unsigned thread) {
   scanner_of(i).plain ? add_noise(i) : find_echoes(i, thread);
@@ -122,13 +148,14 @@ void Lidars::find_echoes(std::size_t i, unsigned thread) {
   const scene::ScanOutput from = output_of(i);
   const auto hits = hits_of(i);
   const auto quality = quality_of(i);
+  const auto materials = scanner_of(i).follows ? parts_of(part_materials_, i) : from.materials;
   const std::vector<std::uint32_t>& cast = s.beams->cast;
   for (std::uint32_t c = 0; c < s.beams->cast_directions().size() / parts; ++c) {
     const std::uint32_t k = cast.empty() ? c : cast[c];
     const std::size_t at = s.beams->in_place ? k : c * parts;
     BeamParts beam{from.ranges.subspan(at, parts), from.cosines.subspan(at, parts), from.hits.subspan(at, parts),
                    from.quality.subspan(at, parts)};
-    if (!from.materials.empty()) beam.materials = from.materials.subspan(at, parts);
+    if (!materials.empty()) beam.materials = materials.subspan(at, parts);
     EchoFinder::Echoes echoes = finders_[thread].find(s.echo, beam, reflectances_);
     if (noise_ && s.echo.dropout > 0.0 && base::random_uniform(drop, k)[0] < s.echo.dropout) echoes = {};
     for (std::size_t e = 0; e < echoes.size(); ++e) {
@@ -193,7 +220,7 @@ constexpr Column kColumns[] = {
 constinit const SensorType lidar_type{
     .id = kLidar,
     .name = "lidar",
-    .word = {"lidar", kLidarKeys},
+    .word = {.type = "lidar", .keys = kLidarKeys, .table_key = "directions"},
     .base_port = 14000,
     .list = "beams",
     .columns = kColumns,

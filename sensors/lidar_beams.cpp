@@ -9,11 +9,11 @@
 
 #include "base/time.h"
 #include "sensors/accuracy.h"
-#include "sensors/beam_table.h"
 #include "sensors/lidar_layout.h"
 #include "sensors/lidar_modes.h"
 #include "sensors/settings.h"
 #include "sensors/spatial_scene.h"
+#include "world/beam_table.h"
 
 namespace sf::sensors {
 
@@ -180,17 +180,19 @@ void BeamBudget::add(const world::Sensor& sensor, std::string_view key, std::siz
         fmt::format("the world's {} have more than {} beams in all; give fewer {} or robots", sensors_, kMost, fewer_));
 }
 
-std::shared_ptr<const LidarBeams> LidarReader::beams_of(const world::Sensor& sensor, std::uint32_t skip) {
+std::shared_ptr<const LidarBeams> LidarReader::beams_of(const world::World& world, const world::Sensor& sensor,
+                                                        std::uint32_t skip) {
   LidarLayout layout;
   if (const world::Setting* const file = find(sensor, "directions")) {
     for (const char* key :
          {"preset", "channels", "columns", "fov", "fov_v", "elevations", "azimuth_offsets", "scan_time"})
       if (find(sensor, key) != nullptr)
         refuse(sensor, key, fmt::format("'{}' and 'directions'; expected one of them", key));
-    const std::string path = beam_table_path(sensor, *file);
-    auto& table = files_[path];
-    if (!table) table = std::make_shared<BeamTable>(read_beam_table(path));
-    layout.table = table.get(), layout.columns = static_cast<std::uint32_t>(table->rows.size());
+    layout.table = world::find_beam_table(world, *file);
+    if (layout.table == nullptr)
+      refuse(sensor, "directions",
+             fmt::format("the world has no table '{}'; expected the name of a CSV file", file->text));
+    layout.columns = static_cast<std::uint32_t>(layout.table->rows.size());
     layout.elevations.resize(1);
   } else {
     read_rings(sensor, layout);
@@ -220,7 +222,7 @@ LidarSettings LidarReader::read(const world::World& world, const world::Sensor& 
   read_noise(sensor, s.echo);
   read_echoes(sensor, s.echo);
   s.mode = mode_of("lidar", kLidarModes, accuracy_of(sensor), world);
-  s.beams = beams_of(sensor, kLidarSkips[s.mode]);
+  s.beams = beams_of(world, sensor, kLidarSkips[s.mode]);
   return s;
 }
 

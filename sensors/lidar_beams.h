@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <glm/ext/vector_double3.hpp>
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -16,7 +15,8 @@
 
 namespace sf::sensors {
 
-inline constexpr std::uint32_t kMostLidarBeams = 1'000'000;  ///< of one lidar, parts of diverging beams included
+inline constexpr std::uint32_t kMostLidarBeams =
+    world::kMostTableBeams;  ///< of one lidar, parts of diverging beams included
 inline constexpr std::uint32_t kMostBeamParts = 64;
 inline constexpr std::size_t kMostBeamTimes = 10'000;  ///< different ones in a rolling scan
 inline constexpr std::uint32_t kMostChannels = 1'024;
@@ -72,8 +72,6 @@ class BeamBudget {
   std::size_t used_ = 0;
 };
 
-struct BeamTable;
-
 /// Reads the settings of lidars. Lidars with equal beams share them.
 class LidarReader {
  public:
@@ -82,11 +80,11 @@ class LidarReader {
 
  private:
   /// @param skip casts every so many columns of rings
-  std::shared_ptr<const LidarBeams> beams_of(const world::Sensor& sensor, std::uint32_t skip);
+  std::shared_ptr<const LidarBeams> beams_of(const world::World& world, const world::Sensor& sensor,
+                                             std::uint32_t skip);
 
   /// With their description.
   std::vector<std::pair<std::vector<double>, std::shared_ptr<const LidarBeams>>> known_;
-  std::map<std::string, std::shared_ptr<const BeamTable>> files_;  ///< by path
 };
 
 }  // namespace sf::sensors

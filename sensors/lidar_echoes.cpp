@@ -39,7 +39,7 @@ double intensity_of(const EchoSettings& s, const Echo& echo) {
 }  // namespace
 
 Reflectances::Reflectances(const world::World& world, const std::vector<world::Material>& materials)
-    : models_(world.models.size(), kUnstated) {
+    : models_(world.models.size(), kUnstated), ground_(world::ground_of(world)) {
   for (const world::Reflectance& row : world.reflectances) models_[row.model] = row.value;
   for (const world::Material& material : materials) materials_.push_back(material.reflectance);
 }

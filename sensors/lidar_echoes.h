@@ -55,10 +55,13 @@ struct Echo {
 /// Reflectances of a world's surfaces: that of the model if it states one, else of the material.
 class Reflectances {
  public:
+  static constexpr std::uint32_t kPaint = world::kNoMaterial - 1;  ///< material of lane markings
+
   /// @param materials by row of scene::ScanOutput::materials
   Reflectances(const world::World& world, const std::vector<world::Material>& materials);
   double of(std::uint32_t hit, std::uint32_t material) const {
-    if (hit < models_.size() && models_[hit] != kUnstated) return models_[hit];
+    if (hit >= models_.size()) return material == kPaint ? ground_.paint : ground_.floor;
+    if (models_[hit] != kUnstated) return models_[hit];
     return material < materials_.size() ? materials_[material] : world::kDefaultReflectance;
   }
 
@@ -66,6 +69,7 @@ class Reflectances {
   static constexpr double kUnstated = -1.0;
   std::vector<double> models_;     ///< by row
   std::vector<double> materials_;  ///< by row
+  world::GroundReflectance ground_;
 };
 
 /// Returns the nearest detected echo and the strongest of the others, without noise.

@@ -46,7 +46,8 @@ std::vector<glm::dvec3> rings_of(const LidarLayout& layout) {
 std::vector<glm::dvec3> directions_of(const LidarLayout& layout) {
   if (layout.table == nullptr) return layout.rosette ? rosette(layout) : rings_of(layout);
   std::vector<glm::dvec3> directions;
-  for (const BeamTable::Row& row : layout.table->rows) directions.push_back(direction_of(row.azimuth, row.elevation));
+  for (const world::BeamDirection& row : layout.table->rows)
+    directions.push_back(direction_of(row.azimuth, row.elevation));
   return directions;
 }
 
@@ -96,7 +97,7 @@ std::vector<double> LidarLayout::description() const {
   all.insert(all.end(), elevations.begin(), elevations.end());
   all.insert(all.end(), offsets.begin(), offsets.end());
   if (table != nullptr)
-    for (const BeamTable::Row& row : table->rows) all.insert(all.end(), {row.azimuth, row.elevation, row.time});
+    for (const world::BeamDirection& row : table->rows) all.insert(all.end(), {row.azimuth, row.elevation, row.time});
   return all;
 }
 

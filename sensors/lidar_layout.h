@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "sensors/beam_table.h"
 #include "sensors/lidar_beams.h"
 
 namespace sf::sensors {
@@ -13,11 +12,11 @@ struct LidarLayout {
   std::vector<double> elevations;  ///< [rad] per channel
   std::vector<double> offsets;     ///< [rad] of the azimuths, per channel
   std::uint32_t columns = 0;
-  double fov = 0.0;                  ///< [rad] in (0, 2 pi]
-  bool rosette = false;              ///< a circle of diameter `fov` instead of rings
-  const BeamTable* table = nullptr;  ///< instead of all these
-  double scan_time = 0.0;            ///< [s] of a rolling scan; 0: all beams are cast at once
-  double divergence = 0.0;           ///< [rad] angle of a beam's cone
+  double fov = 0.0;                         ///< [rad] in (0, 2 pi]
+  bool rosette = false;                     ///< a circle of diameter `fov` instead of rings
+  const world::BeamTable* table = nullptr;  ///< instead of all these
+  double scan_time = 0.0;                   ///< [s] of a rolling scan; 0: all beams are cast at once
+  double divergence = 0.0;                  ///< [rad] angle of a beam's cone
   std::uint32_t parts = 1;
   std::uint32_t skip = 1;  ///< casts every so many columns, and the last one
 

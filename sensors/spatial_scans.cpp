@@ -24,7 +24,7 @@ double longest_range(std::span<const SpatialScanner> scanners) {
 SceneExtras extras_of(std::span<const SpatialScanner> scanners) {
   SceneExtras extras;
   for (const SpatialScanner& s : scanners)
-    extras.coarse |= s.angle > 0.0, extras.materials |= s.materials, extras.textures |= s.follows;
+    extras.coarse |= s.angle > 0.0, extras.materials |= s.materials, extras.textures |= s.textures;
   return extras;
 }
 

@@ -27,7 +27,8 @@ struct SpatialScanner {
   bool cosines = false;    ///< also casts the cosines of angles of incidence,
   bool normals = false;    ///< and the normals of surfaces
   bool materials = false;  ///< surfaces have their materials, which are also cast,
-  bool follows = false;    ///< or passed to `follow` with texture coordinates
+  bool follows = false;    ///< tiles are passed to `follow`, with materials,
+  bool textures = false;   ///< and with texture coordinates
   bool single = false;     ///< as scene::ScanOutput::single
   double depth_max = 0.0;  ///< as scene::ScanOutput::depth_max
 };

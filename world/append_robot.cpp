@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/suggest.h"
+#include "world/beam_table.h"
 #include "world/ground.h"
 #include "world/meshes/textures.h"
 #include "world/ros_map.h"
@@ -159,6 +160,10 @@ void append_copy(World& world, const World& from, std::uint32_t original, const 
     if (&from != &world) row.mesh = mesh_row(world, from, row.mesh);
     world.mesh_models.push_back(row);
   }
+  for (const Sensor& sensor : copy.sensors)
+    for (const Setting& setting : sensor.settings)
+      if (const BeamTable* const table = find_beam_table(from, setting); table != nullptr && &from != &world)
+        if (find_beam_table(world, setting) == nullptr) world.beam_tables.push_back(*table);
   const std::vector<Reflectance> reflectances = rows_on(from.reflectances, from, original, rows);
   world.reflectances.insert(world.reflectances.end(), reflectances.begin(), reflectances.end());
   world.movers.push_back(std::move(copy));

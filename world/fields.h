@@ -168,6 +168,17 @@ template <> inline constexpr auto kFields<Daylight> = std::make_tuple(
     field(&Daylight::sun, Key{"sunlight"}, Bounds{0.0, 100.0}), field(&Daylight::sky, Key{"skylight"}, Bounds{0.0, 100.0}),
     field(&Daylight::floor));
 
+template <> inline constexpr auto kFields<GroundReflectance> = std::make_tuple(
+    field(&GroundReflectance::floor, Key{"floor_reflectance"}, Bounds{0.0, kMostReflectance}),
+    field(&GroundReflectance::paint, Key{"paint_reflectance"}, Bounds{0.0, kMostReflectance}));
+
+template <> inline constexpr auto kFields<BeamDirection> = std::make_tuple(
+    field(&BeamDirection::azimuth, Bounds{-2.0 * M_PI, 2.0 * M_PI}), field(&BeamDirection::elevation, Bounds{-M_PI / 2.0, M_PI / 2.0}),
+    field(&BeamDirection::time, Bounds{0.0, kLongestTable}));
+
+template <> inline constexpr auto kFields<BeamTable> = std::make_tuple(
+    path(&BeamTable::world_file), field(&BeamTable::name), field(&BeamTable::timed), field(&BeamTable::rows));
+
 template <> inline constexpr auto kFields<Warning> = std::make_tuple(
     path(&Warning::file), label(&Warning::line), label(&Warning::message));
 
@@ -205,7 +216,9 @@ template <> inline constexpr auto kFields<World> = std::make_tuple(
     // since version 14
     field(&World::mesh_materials), field(&World::daylight),
     // since version 15
-    field(&World::textures), field(&World::mesh_textures));
+    field(&World::textures), field(&World::mesh_textures),
+    // since version 16
+    field(&World::ground), field(&World::beam_tables));
 
 // clang-format on
 

@@ -101,7 +101,7 @@ std::vector<Words> model_and(std::initializer_list<Words> others) {
 std::vector<Words> keys_in(KeyScope where) {
   switch (where) {
     case KeyScope::world:
-      return {kWorld, fields_of<World>(), fields_of<Daylight>()};
+      return {kWorld, fields_of<World>(), fields_of<Daylight>(), fields_of<GroundReflectance>()};
     case KeyScope::position:
       return model_and({kPosition, fields_of<Mover>()});
     case KeyScope::light:

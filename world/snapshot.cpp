@@ -14,9 +14,11 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
-constexpr std::uint16_t kVersion = 15;
+constexpr std::uint16_t kVersion = 16;
 // Older versions lack the last fields of World. The oldest version is written that has all fields other than zero.
 constexpr std::uint16_t kOldestVersion = 5;
+constexpr std::size_t kSinceVersion16 =
+    least_bytes<std::vector<GroundReflectance>>() + least_bytes<std::vector<BeamTable>>();
 constexpr std::size_t kSinceVersion15 = least_bytes<std::vector<Texture>>() + least_bytes<std::vector<MeshTextures>>();
 constexpr std::size_t kSinceVersion14 =
     least_bytes<std::vector<MeshMaterials>>() + least_bytes<std::vector<Daylight>>();
@@ -31,6 +33,7 @@ constexpr std::size_t kSinceVersion7 = least_bytes<std::vector<Ramp>>() + least_
 constexpr std::size_t kSinceVersion6 = least_bytes<glm::dvec3>() + least_bytes<std::vector<Lamp>>() + sizeof(double);
 
 std::uint16_t version_of(const World& world) {
+  if (!world.ground.empty() || !world.beam_tables.empty()) return 16;
   if (!world.textures.empty() || !world.mesh_textures.empty()) return 15;
   if (!world.mesh_materials.empty() || !world.daylight.empty()) return 14;
   if (!world.reflectances.empty() || !world.terrain.empty()) return 13;
@@ -49,7 +52,7 @@ std::size_t missing_bytes(std::uint16_t version) {
          (version < 9 ? kSinceVersion9 : 0) + (version < 10 ? kSinceVersion10 : 0) +
          (version < 11 ? kSinceVersion11 : 0) + (version < 12 ? kSinceVersion12 : 0) +
          (version < 13 ? kSinceVersion13 : 0) + (version < 14 ? kSinceVersion14 : 0) +
-         (version < 15 ? kSinceVersion15 : 0);
+         (version < 15 ? kSinceVersion15 : 0) + (version < 16 ? kSinceVersion16 : 0);
 }
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("corrupt world snapshot: " + reason); }
@@ -124,7 +127,8 @@ void check_rows(const World& world) {
     materials[row.mesh] = row.materials.size();
   }
   good &= are_textures_good(world, std::move(materials));
-  good &= world.terrain.size() <= 1 && world.daylight.size() <= 1;
+  good &= world.terrain.size() <= 1 && world.daylight.size() <= 1 && world.ground.size() <= 1;
+  for (const BeamTable& table : world.beam_tables) good &= !table.rows.empty() && table.rows.size() <= kMostTableBeams;
   for (const Terrain& terrain : world.terrain)
     good &= std::min(terrain.columns, terrain.rows) >= 2 && std::max(terrain.columns, terrain.rows) <= kMostSide &&
             terrain.heights.size() == std::size_t{terrain.columns} * terrain.rows;

@@ -93,7 +93,8 @@ constexpr auto kHashedIfSet =
     std::make_tuple(&World::earth_field, &World::lamps, &World::ambient_light, &World::ramps, &World::marking_heights,
                     &World::fiducials, &World::shapes, &World::heat_sources, &World::temperature, &World::variations,
                     &World::floor_unseen, &World::meshes, &World::mesh_models, &World::reflectances, &World::terrain,
-                    &World::mesh_materials, &World::daylight, &World::textures, &World::mesh_textures);
+                    &World::mesh_materials, &World::daylight, &World::textures, &World::mesh_textures, &World::ground,
+                    &World::beam_tables);
 
 template <class Members, class Member>
 bool is_among(const Members& members, Member member) {
@@ -185,6 +186,8 @@ void update_extent_and_hash(World& world) {
 }
 
 Daylight daylight_of(const World& world) { return world.daylight.empty() ? Daylight{} : world.daylight[0]; }
+
+GroundReflectance ground_of(const World& world) { return world.ground.empty() ? GroundReflectance{} : world.ground[0]; }
 
 void translate(World& world, double dx, double dy) {
   const auto move = [&](auto& p) {

@@ -5,6 +5,7 @@
 // A world is 2.5-D: flat outlines with a range of heights. The static part is a list of wall segments; movers (robots
 // and linked objects) carry their outlines. Data is stored in tables, joined by row number.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <glm/ext/vector_float2.hpp>
@@ -106,6 +107,25 @@ struct Sensor {
   std::uint32_t color = 0xFF0000FFu;  ///< 0xAARRGGBB, colour of the field of view in figures
 };
 
+/// A beam of a table of directions.
+struct BeamDirection {
+  double azimuth = 0.0, elevation = 0.0;  ///< [rad] in the sensor's frame
+  double time = 0.0;                      ///< [s] in [0, 3600]
+};
+inline constexpr std::uint32_t kMostTableBeams = 1'000'000;
+inline constexpr double kLongestTable = 3600.0;  ///< [s]
+
+/// A table of directions that settings name (world/beam_table.h).
+struct BeamTable {
+  std::string world_file;           ///< that names it,
+  std::string name;                 ///< and as written there
+  bool timed = false;               ///< has the column of times
+  std::vector<BeamDirection> rows;  ///< at least one
+
+  /// Returns the latest time [s].
+  double duration() const { return std::ranges::max(rows, {}, &BeamDirection::time).time; }
+};
+
 /// A sensor type's word in world files, and its properties in addition to those of every model and of every sensor
 /// (rate, phase, latency, noise).
 struct SensorKeyword {
@@ -113,7 +133,8 @@ struct SensorKeyword {
   std::span<const std::string_view> keys;  ///< without indices: `spose[]`
   /// Properties of its `sensor( )` blocks, each of which is a sensor of this type; empty: the type has no blocks.
   std::span<const std::string_view> block_keys = {};
-  bool derived = false;  ///< written `derived( type "localization" ... )`
+  bool derived = false;             ///< written `derived( type "localization" ... )`
+  std::string_view table_key = {};  ///< of a table of directions (world/beam_table.h); empty: none
 };
 
 /// The requested accuracy of one sensor or of all sensors: a word defined by the sensor type (sensors/accuracy.h).
@@ -364,6 +385,12 @@ struct Daylight {
   std::uint32_t floor = 0xFFB0B0B0u;     ///< 0xAARRGGBB, of the floor, roads and terrain
 };
 
+/// Reflectances of the ground, as Reflectance::value.
+struct GroundReflectance {
+  double floor = kDefaultReflectance;  ///< of the floor, roads and terrain
+  double paint = 0.8;                  ///< of lane markings
+};
+
 /// A user message about a problem that did not stop the load.
 struct Warning {
   std::string file;
@@ -428,6 +455,8 @@ struct World {
   std::vector<Daylight> daylight;  ///< at most one; empty: the default (daylight_of)
   std::vector<Texture> textures;   ///< empty unless a camera of the file has colours
   std::vector<MeshTextures> mesh_textures;
+  std::vector<GroundReflectance> ground;  ///< at most one; empty: the default (ground_of)
+  std::vector<BeamTable> beam_tables;
   std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as opened by load_roads
   std::map<std::string, int> unmodelled;  ///< entity types that become plain bodies, with their counts
   double interval = 0.1;                  ///< [s] simulated time per tick (`interval_sim`)
@@ -481,6 +510,7 @@ std::vector<std::uint8_t> snapshot(const World& world);
 World from_snapshot(const std::vector<std::uint8_t>& bytes);
 
 Daylight daylight_of(const World& world);
+GroundReflectance ground_of(const World& world);
 
 /// [m] Returns the radius of the circle about the mover's origin that contains its body.
 double radius_of(const Mover& mover);

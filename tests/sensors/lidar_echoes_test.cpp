@@ -11,12 +11,12 @@
 
 #include "raycast/casters.h"
 #include "robots/kinematics.h"
-#include "sensors/beam_table.h"
 #include "sensors/lidar.h"
 #include "sensors/lidar_beams.h"
 #include "sensors/lidar_packets.h"
 #include "tests/refusal.h"
 #include "tests/sensors/series.h"
+#include "world/beam_table.h"
 
 namespace sf::trial {
 namespace {
@@ -90,6 +90,60 @@ TEST(LidarEchoes, DefaultReflectance) {
   EXPECT_NEAR(r.at(1, 1), 0.5 * std::sin(80 * kDegree), 1e-6);
   EXPECT_EQ(r.hits[2], base::kNoHit);
   EXPECT_EQ(r.at(2, 1), 0.0);
+}
+
+/// A lane along x between two lines, from 1 to 1.2 m to both sides. @param key in the world
+world::World street(const std::string& lidar, const std::string& key = "", const std::string& more = "") {
+  return world_of(key +
+                  "\npath( pose [-20 0 0 0] pieces 1 straight[0] [40 2] left \"solid_white\" right \"solid_yellow\" "
+                  "paint_width 0.2 )\n"
+                  "position( name \"r1\" size [0.4 0.4 0.5] origin [0 0 0 0] lidar( pose [0 0 0.25 0] size [0 0 0] " +
+                  lidar + " ) )\n" + more);
+}
+
+/// Beams on and beside the lines, for the default and for stated reflectances; the reference agrees.
+TEST(LidarEchoes, PaintHasAReflectance) {
+  const std::string lidar = "channels 30 fov_v [-60 -10] columns 240 intensity 1 range [0 20]";
+  const Read usual = echoes_of(street(lidar)),
+             stated = echoes_of(street(lidar, "paint_reflectance 20 floor_reflectance 0.1"));
+  std::size_t painted = 0, bare = 0;
+  for (std::size_t i = 0; i < usual.beams(); ++i) {
+    const double down = (-60.0 + 50.0 * static_cast<double>(i / 240) / 29.0) * kDegree,
+                 azimuth = (-180.0 + 1.5 * static_cast<double>(i % 240)) * kDegree;
+    const double y = usual.at(i, 0) * std::cos(down) * std::sin(azimuth), sine = std::sin(-down);
+    if (usual.hits[i] != base::kFloorHit || std::abs(std::abs(std::abs(y) - 1.1) - 0.1) < 1e-9) continue;
+    const bool on = std::abs(std::abs(y) - 1.1) < 0.1;
+    ++(on ? painted : bare);
+    ASSERT_NEAR(usual.at(i, 1), (on ? 0.8 : 0.5) * sine, 1e-6) << y;
+    ASSERT_NEAR(stated.at(i, 1), (on ? 20.0 : 0.1) * sine, 2e-5) << y;
+  }
+  EXPECT_GT(painted, 300u);
+  EXPECT_GT(bare, 3000u);
+  const Read traced = echoes_of(street(lidar), {}, "reference");
+  for (std::size_t i = 0; i < usual.beams(); ++i) ASSERT_NEAR(usual.at(i, 1), traced.at(i, 1), 1e-6) << i;
+}
+
+/// Straight down from 0.75 m: the echo of the floor is too weak beside a line, and just strong enough on it.
+TEST(LidarEchoes, PaintIsDetectedWhereTheFloorIsNot) {
+  const world::World world = street("elevations [-90] columns 1 fov 1 detects [0.75 0.5] range [0 20]",
+                                    "paint_reflectance 0.501 floor_reflectance 0.499");
+  EXPECT_EQ(echoes_of(world, {0.0, 0.9, 0.0, 0.0}).hits[0], base::kNoHit);
+  EXPECT_EQ(echoes_of(world, {0.0, 1.1, 0.0, 0.0}).hits[0], base::kFloorHit);
+}
+
+/// What covers paint has its own reflectance.
+TEST(LidarEchoes, ModelsCoverPaint) {
+  const Read r = echoes_of(street("elevations [-90] columns 1 fov 1 intensity 1", "",
+                                  "model( name \"mat\" size [40 4 0.01] reflectance 0.3 )\n"),
+                           {0.0, 1.1, 0.0, 0.0});
+  EXPECT_NEAR(r.at(0, 1), 0.3, 1e-6);
+}
+
+/// Parts of a beam across an edge of paint: the mean of both surfaces.
+TEST(LidarEchoes, ConesAcrossPaint) {
+  const Read r = echoes_of(street("elevations [-90] columns 1 fov 1 divergence 4 beam_parts 64 intensity 1"),
+                           {0.0, 1.0, 0.0, 0.0});
+  EXPECT_NEAR(r.at(0, 1), 0.65, 0.01);
 }
 
 /// Devices that do not correct for the distance: at twice the reference range a quarter.
@@ -288,19 +342,19 @@ TEST(LidarRolling, AnyNumberOfThreads) {
 
 /// Livox's heading, with zenith angles from above; CRLF and blanks.
 TEST(BeamTable, ReadsBothHeadings) {
-  const sensors::BeamTable table =
-      sensors::parse_beam_table("t.csv", "Time/s,Azimuth/deg,Zenith/deg\r\n0,90, 80\r\n0.5,-10,100\r\n");
+  const world::BeamTable table =
+      world::parse_beam_table("t.csv", "Time/s,Azimuth/deg,Zenith/deg\r\n0,90, 80\r\n0.5,-10,100\r\n");
   ASSERT_EQ(table.rows.size(), 2u);
   EXPECT_TRUE(table.timed);
   EXPECT_NEAR(table.rows[0].elevation, 10 * kDegree, 1e-12);
   EXPECT_NEAR(table.rows[1].azimuth, -10 * kDegree, 1e-12);
   EXPECT_EQ(table.duration(), 0.5);
-  EXPECT_FALSE(sensors::parse_beam_table("t.csv", "elevation_deg,azimuth_deg\n1,2").timed);
+  EXPECT_FALSE(world::parse_beam_table("t.csv", "elevation_deg,azimuth_deg\n1,2").timed);
 }
 
 TEST(BeamTable, SaysWhatIsWrong) {
   const auto refused = [](const std::string& text) {
-    return refusal_of([&] { sensors::parse_beam_table("t.csv", text); });
+    return refusal_of([&] { world::parse_beam_table("t.csv", text); });
   };
   const std::string heading = "azimuth_deg,elevation_deg,time_s\n";
   expect_in("t.csv:1: the columns are 'x,y'; expected azimuth_deg", refused("x,y\n1,2\n"));
@@ -345,7 +399,11 @@ TEST(LidarEchoes, ImpossibleSettingsAreRefused) {
   expect_in("'scan_time'", refused("rolling 1 scan_time 0"));
   expect_in("20000 different times; expected at most 10000", refused("channels 1 columns 20000 rolling 1"));
   expect_in("trial.world:2: no such file: 'none.csv'", refused("directions \"none.csv\""));
-  expect_in("'channels' and 'directions'", refused("directions \"none.csv\" channels 3"));
+  const std::string path = testing::TempDir() + "one_beam.csv";
+  std::ofstream(path) << "azimuth_deg,elevation_deg\n0,0\n";
+  expect_in("'channels' and 'directions'", refused("directions \"" + path + "\" channels 3"));
+  expect_in("'preset' and 'directions'", refused("preset \"OS1-64\" directions \"" + path + "\""));
+  expect_in("the world has no table ''; expected the name of a CSV file", refused("directions 3"));
   expect_in("'reflectance' is -1", refusal_of([] { world_of("model( reflectance -1 )"); }));
 }
 

@@ -332,7 +332,6 @@ TEST(Lidar, ImpossibleSettingsAreRefused) {
   expect_in("an angle of 'pose6'", refused("pose6 [0 0 0 1e300 0 0]"));
   for (const char* key : {"channels 3", "fov_v [0 1]", "elevations [0]", "azimuth_offsets [1]"})
     expect_in("the beams of \"Mid-40\" form no rings", refused(std::string("preset \"Mid-40\" ") + key));
-  expect_in("'preset' and 'directions'", refused("preset \"OS1-64\" directions \"none.csv\""));
   expect_in("'range_max' is 50, but 'range' states 20; expected one of them", refused("range_max 50 range [0 20]"));
   expect_in("'range_min' is 1, but 'range' states 0", refused("range_min 1 range [0 20]"));
 }

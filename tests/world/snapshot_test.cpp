@@ -215,6 +215,19 @@ TEST(Hash, DependsOnWhateverReadingsDependOn) {
   EXPECT_NE(read_world("model( name \"m\" size [1 1 1] ) position( pose [0 0 0 1] laser() )").hash, hash);
 }
 
+/// The reflectances of the ground are part of the hash and of snapshots, whose version they raise.
+TEST(Hash, DependsOnTheReflectanceOfTheGround) {
+  const auto hash = read_world("model( )").hash;
+  for (const char* key : {"floor_reflectance 0.2 ", "paint_reflectance 0.2 "}) {
+    const World world = read_world(std::string(key) + "model( )");
+    EXPECT_NE(world.hash, hash) << key;
+    EXPECT_EQ(snapshot(world)[4], 16);
+    EXPECT_EQ(from_snapshot(snapshot(world)).hash, world.hash) << key;
+  }
+  for (const char* key : {"floor_reflectance -0.1 ", "paint_reflectance 101 ", "paint_reflectance nan "})
+    EXPECT_THROW(read_world(std::string(key) + "model( )"), base::InputError) << key;
+}
+
 /// Each changes the hash, and its absence leaves the hash of older versions.
 TEST(Hash, DependsOnTheEarthsFieldAndLight) {
   const std::string text = "model( name \"m\" size [1 1 1] ) position( laser() )";

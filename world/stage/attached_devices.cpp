@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/suggest.h"
+#include "world/beam_table.h"
 #include "world/keys.h"
 #include "world/stage/entity_color.h"
 #include "world/stage/unit_hints.h"
@@ -113,6 +114,9 @@ void add_sensors(BuildState& b, const Entity& entity, const Model& model, const 
   };
   if (word.block_keys.empty() || find(entity, "scount") != nullptr)
     add_settings(b, entity, word.keys, add(entity, X_MB, height, "laser_color"));
+  if (!word.table_key.empty() && sensors.size() > before)
+    for (const Setting& setting : sensors.back().settings)
+      if (setting.key == word.table_key && !setting.text.empty()) add_beam_table(b.world, setting);
   for (const Entity& block : entity.children) {
     if (block.type != "sensor" || word.block_keys.empty()) continue;
     Pose X_BS = pose(b.context, block, "pose");

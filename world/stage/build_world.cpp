@@ -136,6 +136,13 @@ void read_daylight(BuildState& b, const Entity& root) {
   b.world.daylight.push_back(day);
 }
 
+/// Adds the reflectances of the ground, if they are not the default.
+void read_ground(BuildState& b, const Entity& root) {
+  bool given = false;
+  for_each_key<GroundReflectance>([&](const auto& field) { given |= find(root, field.key.name) != nullptr; });
+  if (given) read_keys(b.context, root, b.world.ground.emplace_back());
+}
+
 World build_world(const std::string& file, const std::string& content, const LoadOptions& options) {
   refuse_foreign(file, content);
   const Document document = parse(file, content);
@@ -156,6 +163,7 @@ World build_world(const std::string& file, const std::string& content, const Loa
   b.world.accuracy = accuracy(b.context, options, document.root);
   read_terrain(b, document.root);
   read_daylight(b, document.root);
+  read_ground(b, document.root);
   Parent nowhere;
   add_children(b, document.root, nowhere);
   if (!document.ros_map.empty()) add_ros_map(b.world, document.ros_map, options);

@@ -1,25 +1,21 @@
-#include "sensors/beam_table.h"
+#include "world/beam_table.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <optional>
 
 #include "base/error.h"
 #include "base/files.h"
-#include "base/hash.h"
 #include "base/number_text.h"
-#include "sensors/lidar.h"
-#include "sensors/lidar_beams.h"
-#include "sensors/settings.h"
 
-namespace sf::sensors {
+namespace sf::world {
 
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-constexpr double kLongestScan = 3600.0;  ///< [s]
 
 /// Columns of a table, by their place in a line.
 struct TableColumns {
@@ -85,12 +81,12 @@ class TableReader {
   const std::vector<std::string_view>& fields_;
 };
 
-BeamTable::Row row_of(const TableColumns& columns, const TableReader& reader) {
-  BeamTable::Row row;
+BeamDirection row_of(const TableColumns& columns, const TableReader& reader) {
+  BeamDirection row;
   row.azimuth = kDegree * reader.number(*columns.azimuth, -360.0, 360.0);
   row.elevation = columns.elevation ? kDegree * reader.number(*columns.elevation, -90.0, 90.0)
                                     : kDegree * (90.0 - reader.number(*columns.zenith, 0.0, 180.0));
-  if (columns.time) row.time = reader.number(*columns.time, 0.0, kLongestScan);
+  if (columns.time) row.time = reader.number(*columns.time, 0.0, kLongestTable);
   return row;
 }
 
@@ -109,8 +105,8 @@ BeamTable parse_beam_table(const std::string& file, std::string_view text) {
       table.timed = columns->time.has_value();
       continue;
     }
-    if (table.rows.size() == kMostLidarBeams)
-      throw base::InputError(file, line, fmt::format("has more than {} beams", kMostLidarBeams));
+    if (table.rows.size() == kMostTableBeams)
+      throw base::InputError(file, line, fmt::format("has more than {} beams", kMostTableBeams));
     table.rows.push_back(row_of(*columns, TableReader(file, line, fields)));
   }
   if (table.rows.empty())
@@ -120,27 +116,22 @@ BeamTable parse_beam_table(const std::string& file, std::string_view text) {
   return table;
 }
 
-std::string beam_table_path(const world::Sensor& sensor, const world::Setting& directions) {
-  std::string path = (std::filesystem::path(directions.file).parent_path() / directions.text).string();
+const BeamTable* find_beam_table(const World& world, const Setting& setting) {
+  const auto found = std::ranges::find_if(world.beam_tables, [&](const BeamTable& table) {
+    return table.world_file == setting.file && table.name == setting.text;
+  });
+  return found == world.beam_tables.end() ? nullptr : &*found;
+}
+
+void add_beam_table(World& world, const Setting& setting) {
+  if (find_beam_table(world, setting) != nullptr) return;
+  const std::string path = (std::filesystem::path(setting.file).parent_path() / setting.text).string();
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) refuse(sensor, directions.key, fmt::format("no such file: '{}'", path));
-  return path;
+  if (!std::filesystem::exists(path, ignored))
+    throw base::InputError(setting.file, setting.line, fmt::format("no such file: '{}'", path));
+  BeamTable table = parse_beam_table(path, base::read_text(path));
+  table.world_file = setting.file, table.name = setting.text;
+  world.beam_tables.push_back(std::move(table));
 }
 
-std::map<std::string, std::uint64_t> beam_table_hashes(const world::World& world) {
-  std::map<std::string, std::uint64_t> hashes;
-  for (const world::Mover& mover : world.movers)
-    for (const world::Sensor& sensor : mover.sensors) {
-      const auto named = std::ranges::find(sensor.settings, "directions", &world::Setting::key);
-      if (sensor.type != lidar_type.name || named == sensor.settings.end()) continue;
-      const auto [file, is_new] = hashes.try_emplace(beam_table_path(sensor, *named));
-      if (!is_new) continue;
-      const std::string text = base::read_text(file->first);
-      file->second = base::hash_bytes(text.data(), text.size());
-    }
-  return hashes;
-}
-
-BeamTable read_beam_table(const std::string& file) { return parse_beam_table(file, base::read_text(file)); }
-
-}  // namespace sf::sensors
+}  // namespace sf::world
