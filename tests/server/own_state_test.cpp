@@ -112,7 +112,7 @@ struct CreateRun {
 TEST_F(OwnStateTest, LearnsTheScaleOfACreateAndCoastsWhenItsTagIsCovered) {
   double with_cameras = 0.0, without = 0.0, worst = 0.0;
   int beyond = 0;
-  const int seeds = instrumented() ? 10 : 100;
+  const int seeds = instrumented() ? 10 : 50;
   for (int seed = 1; seed <= seeds; ++seed) {
     random.seed(seed);
     now = 0;
