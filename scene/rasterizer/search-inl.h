@@ -8,7 +8,7 @@
 #define SF_SCENE_SEARCH_INL_H
 #endif
 
-#include "scene/horizon.h"
+#include "scene/rasterizer/horizon-inl.h"
 #include "scene/rasterizer/ranges-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -115,10 +115,6 @@ class Search {
   HWY_INLINE Floats place_error(const Floats& t) const {
     return muladd(all(view_->border32_per_metre), t, all(view_->border32));
   }
-  /// Largest integer up to v, or its neighbour where rounding decides; |v| < 2^22.
-  HWY_INLINE Ints floor_near(const Floats& v) const {
-    return bits_of_floats(v - all(0.5f) + all(0x1.8p23f)) - all(0x4B400000);
-  }
   HWY_INLINE Ints x_at(const Floats& t) const { return floor_near(muladd(t, dx_, from_x_)) + origin_x(); }
   HWY_INLINE Ints y_at(const Floats& t) const { return floor_near(muladd(t, dy_, from_y_)) + origin_y(); }
 
@@ -186,9 +182,8 @@ void Search::enter(const Floats& room, Floats& in, Floats& out) const {
 void Search::start(const Horizon& horizon) {
   constexpr std::int32_t kRound = Horizon::kSectors;
   const Floats x = dx_ * all(static_cast<float>(field_->cell.x)), y = dy_ * all(static_cast<float>(field_->cell.y));
-  const Floats zero = all(0.0f), width = absolute(x) + absolute(y), flat = root(muladd(x, x, y * y));
-  const Floats part = y / larger(width, all(1e-30f)), turn = select(at_least(x, zero), part, all(2.0f) - part);
-  const Floats sector = muladd(turn, all(0.25f * kRound), all(0.25f * kRound));
+  const Floats zero = all(0.0f), width = larger(absolute(x) + absolute(y), all(1e-30f));
+  const Floats sector = sector_of(x, y / width);
   auto first = static_cast<std::int32_t>(least(sector) - 0.001f + kRound) - kRound;
   auto last = static_cast<std::int32_t>(0.001f - least(zero - sector));
   if (last - first > kRound / 2) {  // on both sides of the first sector
@@ -196,24 +191,29 @@ void Search::start(const Horizon& horizon) {
     first = static_cast<std::int32_t>(least(turned) - 0.001f + kRound) - kRound;
     last = static_cast<std::int32_t>(0.001f - least(zero - turned) + kRound) - kRound;
   }
-  const Floats slope = dz_ / larger(flat, all(1e-30f)), sure = slope - muladd(absolute(slope), all(1e-6f), all(1e-6f));
-  Floats reach = zero;
-  Ints level = all(1);
-  for (std::int32_t k = 0; k < horizon.rings; ++k) {
-    float most = -HUGE_VALF;
-    for (std::int32_t s = first; s <= last; ++s) most = std::max(most, horizon.slope[(s + kRound) % kRound][k]);
-    const Mask over = greater(sure, all(most));
-    if (none(over)) break;
-    reach = select(over, all(horizon.reach[k]), reach), level = select(over, all(horizon.level[k]), level);
+  alignas(64) float most[Horizon::kMostRings];
+  for (std::int32_t k = 0; k < horizon.rings; k += kWidth) {
+    Floats slopes = all(-HUGE_VALF);
+    for (std::int32_t s = first; s <= last; ++s) slopes = larger(slopes, load(&horizon.slope[s & (kRound - 1)][k]));
+    store(slopes, most + k);
   }
-  const Mask ends = at_least(reach, all(horizon.reach[horizon.rings - 1]));
+  const Floats slope = dz_ / width, sure = slope - muladd(absolute(slope), all(1e-6f), all(1e-6f));
+  Ints rings = all(0);
+  for (std::int32_t k = 0; k < horizon.rings; ++k) {
+    const Mask over = greater(sure, all(most[k]));
+    if (none(over)) break;
+    rings = select(over, all(k + 1), rings);
+  }
+  const Floats reach = smaller(end_of_rings(rings) * all(horizon.inner), all(horizon.last));
+  const Ints level = larger(rings >> all(2), all(1));
+  const Mask ends = greater(rings, all(horizon.rings - 1));
   if (none(without(at_least(end_, zero), ends))) {  // all beams stay above the ground
     const Mask no = greater(zero, zero);
     active_ = no, found_ = {no, no, no};
     points_ = {all(0), low_y_, zero};
     return;
   }
-  const Floats t = reach / larger(flat, all(1e-30f)) * all(0.999999f);
+  const Floats t = reach / width * all(0.99999f);
   Floats in, inside, out;
   enter(zero - room(), in, inside), enter(room(), in, out);
   // Beams that may leave the field about there start at the sensor, in 64 bits.

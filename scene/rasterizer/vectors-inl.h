@@ -92,6 +92,8 @@ SF_BY_PARTS(Ints, select, (const Mask& m, const Ints& yes, const Ints& no),
             hn::IfThenElse(hn::RebindMask(kI, m.part[p]), yes.part[p], no.part[p]))
 SF_BY_PARTS(Floats, floats_of, (const Ints& a), hn::ConvertTo(kF, a.part[p]))
 SF_BY_PARTS(Ints, bits_of_floats, (const Floats& a), hn::BitCast(kI, a.part[p]))
+SF_BY_PARTS(Floats, floats_with_bits, (const Ints& a), hn::BitCast(kF, a.part[p]))
+SF_BY_PARTS(Ints, lane_numbers, (), hn::Iota(kI, static_cast<std::int32_t>(p* kLanes)))
 SF_BY_PARTS(Floats, gather, (const float* from, const Ints& rows), hn::GatherIndex(kF, from, rows.part[p]))
 #undef SF_BY_PARTS
 
@@ -127,6 +129,13 @@ HWY_INLINE Mask mask_of(std::uint32_t bits) {
   for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::LoadMaskBits(kF, bytes_of(bits >> (p * kLanes)).data());
   return out;
 }
+/// Loads sixteen pairs that follow each other.
+HWY_INLINE void load_pairs(const float* from, Floats& first, Floats& second) {
+  for (std::size_t p = 0; p < kParts; ++p)
+    hn::LoadInterleaved2(kF, from + 2 * p * kLanes, first.part[p], second.part[p]);
+}
+/// Largest integer up to v, or its neighbour where rounding decides; |v| < 2^22.
+HWY_INLINE Ints floor_near(const Floats& v) { return bits_of_floats(v - all(0.5f) + all(0x1.8p23f)) - all(0x4B400000); }
 HWY_INLINE float least(const Floats& a) {
   auto v = a.part[0];
   for (std::size_t p = 1; p < kParts; ++p) v = hn::Min(v, a.part[p]);
