@@ -114,7 +114,8 @@ void HorizonBuilding::set_rings() {
   out_.inner = static_cast<float>(inner), out_.last = static_cast<float>(last);
   const auto bits = std::bit_cast<std::int32_t>(static_cast<float>(std::max(1.0, last / inner)));
   out_.rings = std::min(((bits - kFirstRing) >> kRingShift) + 1, Horizon::kMostRings);
-  for (auto& sector : out_.slope) std::fill_n(sector, Horizon::kMostRings, -HUGE_VALF);
+  for (auto& sector : out_.slope)
+    for (std::int32_t k = 0; k < Horizon::kMostRings; ++k) sector[k] = k < out_.rings ? -HUGE_VALF : HUGE_VALF;
 }
 
 Blocks HorizonBuilding::blocks_at(std::int32_t x, std::int32_t y, std::int32_t level) const {
