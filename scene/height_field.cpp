@@ -44,7 +44,9 @@ BoundingPlane plane_over(const HeightField& field, std::int32_t i, std::int32_t 
 }
 
 std::vector<BoundingPlane> pyramid_of(const HeightField& field, double sign) {
-  std::vector<BoundingPlane> out(static_cast<std::size_t>(field.pitch) * static_cast<std::size_t>(field.bias / 2));
+  constexpr std::size_t kLoadedAtOnce = 16;  // by horizons
+  std::vector<BoundingPlane> out(static_cast<std::size_t>(field.pitch) * static_cast<std::size_t>(field.bias / 2) +
+                                 kLoadedAtOnce);
   for (std::int32_t level = 1; level <= field.levels; ++level) {
     const std::int32_t size = 1 << level;
     for (std::int32_t j = 0; j < field.rows - 1; j += size)

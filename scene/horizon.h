@@ -1,28 +1,24 @@
 #pragma once
 // How far beams from a sensor above a height field certainly do not meet it, by azimuth and elevation: starts for
-// searches. One per scan.
+// searches. One per scan (rasterizer/horizon-inl.h).
+//
+// Horizontal distances are |x| + |y|, in which slopes and sectors of a block follow from its corners alone: over a
+// plane, height / distance is largest at a corner where it is negative.
 
 #include <cstdint>
 
-#include "scene/field_view.h"
-
 namespace sf::scene {
 
-/// A beam of azimuth in sector s that rises by more than slope[s][k] [m per horizontal metre] does not meet the field
-/// within the horizontal distance reach[k]. Slopes grow with k.
+/// A beam of azimuth in sector s that rises by more than slope[s][k] [m per metre of distance] does not meet the field
+/// within ring k, which ends at the distance min(last, inner (1 + k % 4 / 4) 2^(k / 4)). Slopes grow with k.
 struct Horizon {
-  static constexpr std::int32_t kSectors = 64, kMostRings = 32;
+  static constexpr std::int32_t kSectors = 128;   ///< a power of 2
+  static constexpr std::int32_t kMostRings = 64;  ///< a multiple of 16
   std::int32_t rings = 0;
-  float reach[kMostRings];         ///< [m]; the last: the whole field, or the range
-  std::int32_t level[kMostRings];  ///< of blocks that suit searches from there
-  float slope[kSectors][kMostRings];
+  float inner = 0.0f;  ///< [m]
+  float last = 0.0f;   ///< [m] the whole field, or the range
+  alignas(64) float slope[kSectors][kMostRings];
   float highest;  ///< largest of the slopes; beams that rise by more meet nothing
-
-  /// Returns the sector of a direction as a fraction in [0, kSectors]: monotonic in the azimuth, in quadrants.
-  static double sector_of(double x, double y);
 };
-
-/// @param view of a sensor over the field and certainly above it
-void build_horizon(const FieldView& view, Horizon& out);
 
 }  // namespace sf::scene

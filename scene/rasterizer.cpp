@@ -25,11 +25,13 @@ namespace sf::scene::HWY_NAMESPACE {
 /// One scan.
 class Scan {
  public:
-  Scan(Scratch& s, const RigidTransform& X_WS, double range_max, const SceneView& scene, const ScanOutput& out)
+  /// @param tiles of the scan
+  Scan(Scratch& s, const RigidTransform& X_WS, std::span<const BeamTile> tiles, double range_max,
+       const SceneView& scene, const ScanOutput& out)
       : s_(s), range_max_(range_max), floor_(scene.floor), floor_plane_(floor_plane(X_WS, range_max)), out_(out) {
     if (scene.terrain.field != nullptr)
       terrain_.emplace(*scene.terrain.field, base::relative(scene.terrain.X_WF, X_WS), range_max);
-    if (terrain_ && terrain_->side > 0) build_horizon(*terrain_, horizon_);
+    if (terrain_ && terrain_->side > 0) build_horizon(*terrain_, tiles, horizon_);
     for (const SceneMesh& mesh : s.meshes) textured_ = textured_ || !mesh.tree->mesh.coordinates.empty();
     set_spheres();
   }
@@ -379,17 +381,10 @@ void Scan::draw(const BeamTile& tile, std::uint32_t vectors) {
 /// Returns true if all beams of a tile stay above the terrain.
 bool Scan::stays_above(const BeamTile& tile) const {
   if (terrain_->side <= 0) return false;
-  const Rotation R(terrain_->X_FS.R);
-  const float slope = std::max(horizon_.highest, 0.0f);  // directions above a positive slope are a convex cone
-  for (const float u : {-1.0f, 1.0f})
-    for (const float v : {-1.0f, 1.0f}) {
-      float corner[3];
-      for (int i = 0; i < 3; ++i)
-        corner[i] = tile.tile.box[i][0] + u * tile.tile.box[3 + i][0] + v * tile.tile.box[6 + i][0];
-      const float x = R.row(0, corner), y = R.row(1, corner);
-      if (!(R.row(2, corner) > slope * std::sqrt(x * x + y * y) * 1.00001f + 1e-5f)) return false;
-    }
-  return true;
+  const double slope = std::max(double{horizon_.highest}, 0.0);  // directions above a positive slope are a convex cone
+  return std::ranges::all_of(corners_of(tile, terrain_->X_FS.R), [&](const glm::dvec3& d) {
+    return d.z > slope * (std::abs(d.x) + std::abs(d.y)) * 1.00001 + 1e-5;
+  });
 }
 
 /// @return true if any beam so far has a flag
@@ -448,7 +443,7 @@ bool Scan::finish(const BeamTile& tile, std::span<const CastBeam> cast) {
 
 bool scan_tiles(Scratch& s, const RigidTransform& X_WS, std::span<const BeamTile> tiles, double range_max,
                 const SceneView& scene, const ScanOutput& out, std::span<const CastBeam> cast) {
-  Scan scan(s, X_WS, range_max, scene, out);
+  Scan scan(s, X_WS, tiles, range_max, scene, out);
   bool flagged = false;
   for (std::size_t i = 0; i < tiles.size(); ++i)
     flagged = cast.empty() ? scan.cast(tiles[i], tiles[std::min(i + 1, tiles.size() - 1)])

@@ -82,6 +82,8 @@ HWY_INLINE void aim_beams(Scratch& s, const BeamTile& tile, const SceneMesh& mes
     const auto offset = [&](const float(*n)[kTileVectors]) {
       return dot(load(n[0] + g), load(n[1] + g), load(n[2] + g), x, y, z);
     };
+    for (int k = 0; k < 12; ++k) store(absolute(load(s.vectors.plane[k] + g)), s.side_size[k] + g);
+    for (int k = 0; k < 3; ++k) store(absolute(load(s.vectors.axis[k] + g)), s.axis_size[k] + g);
     for (int k = 0; k < 4; ++k) store(offset(s.vectors.plane + 3 * k) - all(eye.room), s.side_offset[k] + g);
     store(offset(s.vectors.axis) + all(eye.room), s.axis_offset + g);
   }

@@ -67,6 +67,23 @@ HWY_INLINE Extent inside_of(const Edge& edge, const Floats (&box)[9]) {
   return e;
 }
 
+/// Returns the faces that may cover directions c + a U + b V of a box: all edges allow one a. Edge by edge, most faces
+/// beside a row of beams would be left.
+/// @param error of e . d
+HWY_INLINE Mask may_cover_row(const float (&edges)[12][kWidth], const Floats& error, const Floats (&box)[9]) {
+  Floats from = all(-1.0f), to = all(1.0f);
+  for (int k = 0; k < 12; k += 3) {
+    const Floats x = load(edges[k]), y = load(edges[k + 1]), z = load(edges[k + 2]);
+    const Floats rise = dot(x, y, z, box[3], box[4], box[5]);
+    const Floats high = dot(x, y, z, box[0], box[1], box[2]) + absolute(dot(x, y, z, box[6], box[7], box[8])) + error;
+    const Floats size = larger(absolute(rise), all(1e-30f));
+    const Floats end = high * turned(all(1.0f) / size, rise);  // the edge is at a = -end
+    const Mask up = at_least(rise, all(0.0f));
+    from = larger(from, select(up, all(0.0f) - end, from)), to = smaller(to, select(up, to, all(0.0f) - end));
+  }
+  return at_least(to + all(1e-5f), from);
+}
+
 /// Draws the faces of a leaf in one group of sixteen vectors.
 template <class Directions>
 class LeafDrawing {
@@ -80,21 +97,27 @@ class LeafDrawing {
         first_face_(mesh.first_face),
         longest_(tile.longest) {}
 
-  /// Returns those of sixteen faces that boxes of directions may see. @param farthest [1/m] nearest certain hit
+  /// Returns those of sixteen faces that a box of directions may see. @param farthest [1/m] nearest certain hit
+  /// @tparam row true: the box of a vector
+  template <bool row>
   HWY_INLINE std::uint32_t faces_seen(const Floats (&box)[9], float farthest) const {
-    const Extent inside = inside_of([&](int k) { return load(view_.edge[k]); }, box);
+    const Floats error = load(view_.edge_error) * all(2.0f * longest_);
+    Mask inside;
+    if constexpr (row)
+      inside = may_cover_row(view_.edge, error, box);
+    else
+      inside = at_least(inside_of([&](int k) { return load(view_.edge[k]); }, box).high + error, all(0.0f));
     const Floats nearest = extent(load(view_.inverse[0]), load(view_.inverse[1]), load(view_.inverse[2]), box).high;
     const Floats high =
         muladd(larger(nearest, all(0.0f)), load(view_.above) + all(1e-5f), load(view_.slack) * all(longest_));
-    return bits_of(both(at_least(muladd(load(view_.edge_error), all(2.0f * longest_), inside.high), all(0.0f)),
-                        at_least(high, all(farthest))));
+    return bits_of(both(inside, at_least(high, all(farthest))));
   }
 
   /// All faces in one vector.
   HWY_INLINE void draw_vector(std::uint32_t v, std::uint32_t faces) {
     Floats box[9];
     for (int i = 0; i < 9; ++i) box[i] = all(from_.vectors.box[i][v]);
-    faces &= faces_seen(box, s_.farthest[v]);
+    faces &= faces_seen<true>(box, s_.farthest[v]);
     if (faces == 0) return;
     Beams beams = load_beams(from_, s_, v);
     for (; faces != 0; faces &= faces - 1) {
@@ -164,7 +187,7 @@ HWY_INLINE void draw_leaf(Scratch& s, const Directions& from, const BeamTile& ti
   if (__builtin_popcount(vectors) > 2) {  // the tile's box first
     Floats box[9];
     for (int i = 0; i < 9; ++i) box[i] = all(from.tile.box[i][0]);
-    open &= drawing.faces_seen(box, farthest);
+    open &= drawing.template faces_seen<false>(box, farthest);
   }
   for (std::uint32_t g = 0; g < kTileVectors && open != 0; g += kWidth) {
     const std::uint32_t wanted = vectors >> g & 0xFFFFu;

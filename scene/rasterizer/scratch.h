@@ -42,6 +42,7 @@ struct Rasterizer::Scratch {
   // Boxes in the same frame. A point q relative to the tree's centre is inside of side k if plane . q >= side_offset.
   DirectionBoxes<kTileVectors> vectors;
   alignas(64) float side_offset[4][kTileVectors], axis_offset[kTileVectors];
+  alignas(64) float side_size[12][kTileVectors], axis_size[3][kTileVectors];  ///< absolute values of `vectors`
   DirectionBoxes<1> tile;
   float tile_side_offset[4], tile_axis_offset;
 

@@ -8,7 +8,7 @@
 #define SF_SCENE_SEARCH_INL_H
 #endif
 
-#include "scene/horizon.h"
+#include "scene/rasterizer/horizon-inl.h"
 #include "scene/rasterizer/ranges-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -69,7 +69,6 @@ class Search {
     const Mask no = greater(all(0.0f), all(0.0f));
     points_ = points, active_ = active, found_ = {no, no, no};
     level_ = smaller(level, all(field_->levels));
-    per_x_ = reciprocal(dx_), per_y_ = reciprocal(dy_), per_turn_ = reciprocal(dx_ - dy_);
   }
   /// Starts from the sensor, or from where the beams come close to the surface.
   HWY_INLINE void start(const Horizon& horizon);
@@ -101,6 +100,7 @@ class Search {
   HWY_INLINE void step_cells();
   HWY_INLINE void move(const Crossing& at, const Mask& moving, const Mask& clear, const Floats& next,
                        const Floats& room);
+  HWY_INLINE void end(const Crossing& at, const Mask& crossing, const Ints& x, const Ints& y, const Floats& room);
   HWY_INLINE CellHeights cell_at(const Ints& x, const Ints& y, const Floats& place_x, const Floats& place_y) const;
   HWY_INLINE Mask certain(const CellHeights& cell, const Floats& from, const Floats& to, const Floats& high,
                           const Floats& low, const Floats& error, Mask& upper) const;
@@ -115,18 +115,20 @@ class Search {
   HWY_INLINE Floats place_error(const Floats& t) const {
     return muladd(all(view_->border32_per_metre), t, all(view_->border32));
   }
-  /// Largest integer up to v, or its neighbour where rounding decides; |v| < 2^22.
-  HWY_INLINE Ints floor_near(const Floats& v) const {
-    return bits_of_floats(v - all(0.5f) + all(0x1.8p23f)) - all(0x4B400000);
-  }
-  HWY_INLINE Ints x_at(const Floats& t) const { return floor_near(muladd(t, dx_, from_x_)) + origin_x(); }
-  HWY_INLINE Ints y_at(const Floats& t) const { return floor_near(muladd(t, dy_, from_y_)) + origin_y(); }
+  /// Cells at some points, or their neighbours where rounding decides.
+  HWY_INLINE Ints x_at(const Floats& t) const { return nearest_bits(muladd(t, dx_, middle_x_)) + all(cell_x_); }
+  HWY_INLINE Ints y_at(const Floats& t) const { return nearest_bits(muladd(t, dy_, middle_y_)) + all(cell_y_); }
 
   const FieldView* view_ = nullptr;
   const HeightField* field_ = nullptr;
   float side_ = 1.0f, z_ = 0.0f;
   const BoundingPlane* planes_ = nullptr;
   Floats dx_, dy_, dz_, per_x_, per_y_, per_turn_, end_, from_x_, from_y_, error_, error_per_metre_;
+  Floats middle_x_, middle_y_;  ///< [cells] the sensor's place less 0.5
+  Floats inside_;               ///< [m] until there, beams certainly neither leave the field nor end
+  Floats tilt_x_, tilt_y_;      ///< directions in BoundingPlane's units
+  float plane_z_, plane_error_per_metre_, slope_unit_;
+  std::int32_t cell_x_, cell_y_;  ///< the sensor's cell, less kNearestBits
   Ints step_x_, step_y_, cells_x_, low_y_, end_y_;
 
   FieldPoints points_;
@@ -135,18 +137,20 @@ class Search {
   Found found_;
 };
 
-/// Loads pairs of floats from from[row] and from[row + 1].
+/// Loads pairs of floats from from[stride row] and the next. @tparam stride 1 or 2
+template <int stride = 1>
 HWY_INLINE void gather_pairs(const float* from, const Ints& rows, Floats& first, Floats& second) {
 #if HWY_TARGET == HWY_SCALAR
-  first = gather(from, rows), second = gather(from + 1, rows);
+  const Ints at = stride == 1 ? rows : rows + rows;
+  first = gather(from, at), second = gather(from + 1, at);
 #else
   constexpr hn::CappedTag<std::uint64_t, kLanes / 2> kPair;
   constexpr hn::RebindToSigned<decltype(kPair)> kOffset;
   constexpr hn::Rebind<std::int32_t, decltype(kPair)> kHalf;
   const auto* const pairs = reinterpret_cast<const std::uint64_t*>(from);
   for (std::size_t p = 0; p < kParts; ++p) {
-    const auto low = hn::ShiftLeft<2>(hn::PromoteTo(kOffset, hn::LowerHalf(kHalf, rows.part[p])));
-    const auto high = hn::ShiftLeft<2>(hn::PromoteTo(kOffset, hn::UpperHalf(kHalf, rows.part[p])));
+    const auto low = hn::ShiftLeft<1 + stride>(hn::PromoteTo(kOffset, hn::LowerHalf(kHalf, rows.part[p])));
+    const auto high = hn::ShiftLeft<1 + stride>(hn::PromoteTo(kOffset, hn::UpperHalf(kHalf, rows.part[p])));
     const auto a = hn::BitCast(kF, hn::GatherOffset(kPair, pairs, low));
     const auto b = hn::BitCast(kF, hn::GatherOffset(kPair, pairs, high));
     first.part[p] = hn::ConcatEven(kF, b, a), second.part[p] = hn::ConcatOdd(kF, b, a);
@@ -170,6 +174,14 @@ void Search::begin(const FieldView& view, const FieldRays& rays, float side, con
   step_x_ = select(at_least(dx_, zero), all(1), all(0)), step_y_ = select(at_least(dy_, zero), all(1), all(0));
   cells_x_ = all(field_->columns - 1), low_y_ = all(-field_->bias), end_y_ = all(field_->rows - 1 - field_->bias);
   error_ = all(view.error32), error_per_metre_ = all(view.error32_per_metre);
+  per_x_ = reciprocal(dx_), per_y_ = reciprocal(dy_), per_turn_ = reciprocal(dx_ - dy_);
+  middle_x_ = from_x_ - all(0.5f), middle_y_ = from_y_ - all(0.5f);
+  cell_x_ = view.base.x - kNearestBits, cell_y_ = view.base.y - field_->bias - kNearestBits;
+  slope_unit_ = field_->slope_unit * 0x1p-16f;
+  tilt_x_ = dx_ * all(slope_unit_), tilt_y_ = dy_ * all(slope_unit_);
+  plane_z_ = z_ - 2.0f * view.error32, plane_error_per_metre_ = 2.0f * view.error32_per_metre;
+  Floats in;
+  enter(zero - room(), in, inside_);
 }
 
 void Search::enter(const Floats& room, Floats& in, Floats& out) const {
@@ -179,16 +191,15 @@ void Search::enter(const Floats& room, Floats& in, Floats& out) const {
     in = larger(in, smaller(low, high)), out = smaller(out, larger(low, high));
   };
   in = all(0.0f), out = end_;
-  along(view_->base.x, field_->columns - 1, from_x_, reciprocal(dx_));
-  along(view_->base.y, field_->rows - 1, from_y_, reciprocal(dy_));
+  along(view_->base.x, field_->columns - 1, from_x_, per_x_);
+  along(view_->base.y, field_->rows - 1, from_y_, per_y_);
 }
 
 void Search::start(const Horizon& horizon) {
   constexpr std::int32_t kRound = Horizon::kSectors;
   const Floats x = dx_ * all(static_cast<float>(field_->cell.x)), y = dy_ * all(static_cast<float>(field_->cell.y));
-  const Floats zero = all(0.0f), width = absolute(x) + absolute(y), flat = root(muladd(x, x, y * y));
-  const Floats part = y / larger(width, all(1e-30f)), turn = select(at_least(x, zero), part, all(2.0f) - part);
-  const Floats sector = muladd(turn, all(0.25f * kRound), all(0.25f * kRound));
+  const Floats zero = all(0.0f), width = larger(absolute(x) + absolute(y), all(1e-30f));
+  const Floats sector = sector_of(x, y / width);
   auto first = static_cast<std::int32_t>(least(sector) - 0.001f + kRound) - kRound;
   auto last = static_cast<std::int32_t>(0.001f - least(zero - sector));
   if (last - first > kRound / 2) {  // on both sides of the first sector
@@ -196,29 +207,37 @@ void Search::start(const Horizon& horizon) {
     first = static_cast<std::int32_t>(least(turned) - 0.001f + kRound) - kRound;
     last = static_cast<std::int32_t>(0.001f - least(zero - turned) + kRound) - kRound;
   }
-  const Floats slope = dz_ / larger(flat, all(1e-30f)), sure = slope - muladd(absolute(slope), all(1e-6f), all(1e-6f));
-  Floats reach = zero;
-  Ints level = all(1);
-  for (std::int32_t k = 0; k < horizon.rings; ++k) {
-    float most = -HUGE_VALF;
-    for (std::int32_t s = first; s <= last; ++s) most = std::max(most, horizon.slope[(s + kRound) % kRound][k]);
-    const Mask over = greater(sure, all(most));
-    if (none(over)) break;
-    reach = select(over, all(horizon.reach[k]), reach), level = select(over, all(horizon.level[k]), level);
+  const Floats slope = dz_ / width, sure = slope - muladd(absolute(slope), all(1e-6f), all(1e-6f));
+  const Floats lowest = all(least(sure));
+  alignas(64) float most[Horizon::kMostRings];
+  std::int32_t common = 0;  // rings within which all beams stay above the ground
+  for (std::int32_t k = 0; k < horizon.rings; k += kWidth) {
+    Floats slopes = all(-HUGE_VALF);
+    for (std::int32_t s = first; s <= last; ++s) slopes = larger(slopes, load(&horizon.slope[s & (kRound - 1)][k]));
+    store(slopes, most + k);
+    common += __builtin_popcount(bits_of(greater(lowest, slopes)));
   }
-  const Mask ends = at_least(reach, all(horizon.reach[horizon.rings - 1]));
+  Ints rings = all(common);
+  for (std::int32_t k = common; k < horizon.rings; ++k) {
+    const Mask over = greater(sure, all(most[k]));
+    if (none(over)) break;
+    rings = select(over, all(k + 1), rings);
+  }
+  const Floats reach = smaller(end_of_rings(rings) * all(horizon.inner), all(horizon.last));
+  const Ints level = larger(rings >> all(2), all(1));
+  const Mask ends = greater(rings, all(horizon.rings - 1));
   if (none(without(at_least(end_, zero), ends))) {  // all beams stay above the ground
     const Mask no = greater(zero, zero);
     active_ = no, found_ = {no, no, no};
     points_ = {all(0), low_y_, zero};
     return;
   }
-  const Floats t = reach / larger(flat, all(1e-30f)) * all(0.999999f);
-  Floats in, inside, out;
-  enter(zero - room(), in, inside), enter(room(), in, out);
+  const Floats t = reach / width * all(0.99999f);
+  Floats in, out;
+  enter(room(), in, out);
   // Beams that may leave the field about there start at the sensor, in 64 bits.
   const Mask goes = without(both(at_least(end_, zero), at_least(smaller(end_, out), t)), ends);
-  const Mask unsure = both(goes, greater(t, inside));
+  const Mask unsure = both(goes, greater(t, inside_));
   start(points_at(select(unsure, zero, smaller(t, end_))), without(goes, unsure), level);
   found_.unsure = unsure;
 }
@@ -275,13 +294,13 @@ void Search::step_blocks(const Mask& moving) {
   const Ints level = larger(level_, all(1));  // some beams wait at their cells
   const Ints row = (points_.y >> level) * all(field_->pitch) + (points_.x >> level);
   Floats height, slopes;
-  gather_pairs(&planes_->height, row + row, height, slopes);
-  const Ints packed = bits_of_floats(slopes), half = all(16);
-  const Floats unit = all(field_->slope_unit);
-  const Floats slope_x = floats_of(packed << half >> half) * unit, slope_y = floats_of(packed >> half) * unit;
+  gather_pairs<2>(&planes_->height, row, height, slopes);
+  const Ints packed = bits_of_floats(slopes);
+  const Floats slope_x = floats_of(packed << all(16)), slope_y = floats_of(packed & all(~0xFFFF));
   // The beam's height above the plane is t rise - under, less twice the error, so that cells tell it from 0.
-  const Floats under = muladd(slope_x, at.x, muladd(slope_y, at.y, height - all(z_))) + all(2.0f) * error_at(at.out);
-  const Floats rise = dz_ - muladd(slope_x, dx_, slope_y * dy_);
+  const Floats level_plane = muladd(all(plane_error_per_metre_), at.out, height - all(plane_z_));
+  const Floats under = muladd(all(slope_unit_), muladd(slope_x, at.x, slope_y * at.y), level_plane);
+  const Floats rise = mulless(slope_x, tilt_x_, mulless(slope_y, tilt_y_, dz_));
   const Floats now = mulsub(points_.t, rise, under), then = mulsub(at.out, rise, under), room = smaller(now, then);
   const Mask clear = greater(room, all(0.0f));
   const Floats meets = select_or_zero(greater(now, all(0.0f)), under / rise * all(0.999999f));
@@ -322,19 +341,25 @@ void Search::move(const Crossing& at, const Mask& moving, const Mask& clear, con
   const Ints parity = select(at.through_x, at.line_x, at.line_y) >> level_ & one;
   const Ints level = select(clear, smaller(level_ + one - parity, all(field_->levels)), level_ - one);
 
-  const Mask outside = either(either(greater(zero, next_x), greater(next_x, cells_x_ - one)),
-                              either(greater(low_y_, next_y), greater(next_y, end_y_ - one)));
-  const Mask left = both(both(moving, clear), outside);
-  if (!none(left)) {  // beams along the border may stay inside
-    const Floats speed = absolute(select(at.through_x, dx_, dy_));
-    const Floats rate = muladd(all(field_->steepest), absolute(dx_) + absolute(dy_), absolute(dz_));
-    found_.unsure = either(found_.unsure, without(left, greater(room * speed, rate * place_error(at.out))));
-    active_ = without(active_, left);
-  }
+  const Mask beyond = both(moving, greater(next, inside_));
+  if (!none(beyond)) end(at, both(beyond, clear), next_x, next_y, room);
   const Mask goes = both(moving, active_);
   points_ = {select(goes, next_x, points_.x), select(goes, next_y, points_.y), select(goes, next, points_.t)};
   level_ = select(goes, level, level_);
-  active_ = both(active_, at_least(end_, points_.t));
+  if (!none(beyond)) active_ = both(active_, at_least(end_, points_.t));
+}
+
+/// Ends beams that leave the field at the next cell.
+void Search::end(const Crossing& at, const Mask& crossing, const Ints& x, const Ints& y, const Floats& room) {
+  const Mask outside = either(either(greater(all(0), x), greater(x, cells_x_ - all(1))),
+                              either(greater(low_y_, y), greater(y, end_y_ - all(1))));
+  const Mask left = both(crossing, outside);
+  if (none(left)) return;
+  // Beams along the border may stay inside.
+  const Floats speed = absolute(select(at.through_x, dx_, dy_));
+  const Floats rate = muladd(all(field_->steepest), absolute(dx_) + absolute(dy_), absolute(dz_));
+  found_.unsure = either(found_.unsure, without(left, greater(room * speed, rate * place_error(at.out))));
+  active_ = without(active_, left);
 }
 
 }  // namespace sf::scene::HWY_NAMESPACE

@@ -26,18 +26,14 @@ HWY_INLINE std::uint32_t vectors_that_see(const Scratch& s, const TreeNode& node
   const Floats hx = all(half[0]), hy = all(half[1]), hz = all(half[2]);
   std::uint32_t seen = 0;
   for (std::uint32_t g = 0; g < kTileVectors; g += kWidth) {
-    Floats a[3];
-    const auto load_row = [&](const float(*rows)[kTileVectors]) {
-      for (int i = 0; i < 3; ++i) a[i] = load(rows[i] + g);
+    const auto along = [&](const float(*n)[kTileVectors], const Floats& x, const Floats& y, const Floats& z) {
+      return dot(load(n[0] + g), load(n[1] + g), load(n[2] + g), x, y, z);
     };
-    const auto centre = [&] { return dot(a[0], a[1], a[2], mx, my, mz); };
-    const auto radius = [&] { return dot(absolute(a[0]), absolute(a[1]), absolute(a[2]), hx, hy, hz); };
-    load_row(s.vectors.axis);
-    const Floats depth = centre() - radius() - load(s.axis_offset + g);
+    const Floats depth = along(s.vectors.axis, mx, my, mz) - along(s.axis_size, hx, hy, hz) - load(s.axis_offset + g);
     Mask see = at_least(all(1.0001f), depth * load(s.farthest + g));
     for (int k = 0; k < 4; ++k) {
-      load_row(s.vectors.plane + 3 * k);
-      see = both(see, at_least(centre() + radius(), load(s.side_offset[k] + g)));
+      const Floats most = along(s.vectors.plane + 3 * k, mx, my, mz) + along(s.side_size + 3 * k, hx, hy, hz);
+      see = both(see, at_least(most, load(s.side_offset[k] + g)));
     }
     seen |= bits_of(see) << g;
   }

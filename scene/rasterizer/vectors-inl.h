@@ -61,6 +61,9 @@ SF_BY_PARTS(Floats, muladd, (const Floats& a, const Floats& b, const Floats& c),
             hn::MulAdd(a.part[p], b.part[p], c.part[p]))
 SF_BY_PARTS(Floats, mulsub, (const Floats& a, const Floats& b, const Floats& c),
             hn::MulSub(a.part[p], b.part[p], c.part[p]))
+/// c - a b, rounded once or twice.
+SF_BY_PARTS(Floats, mulless, (const Floats& a, const Floats& b, const Floats& c),
+            hn::NegMulAdd(a.part[p], b.part[p], c.part[p]))
 /// a with the sign changed where b is negative.
 SF_BY_PARTS(Floats, turned, (const Floats& a, const Floats& b), hn::Xor(a.part[p], hn::And(b.part[p], hn::SignBit(kF))))
 SF_BY_PARTS(Mask, greater, (const Floats& a, const Floats& b), a.part[p] > b.part[p])
@@ -92,6 +95,8 @@ SF_BY_PARTS(Ints, select, (const Mask& m, const Ints& yes, const Ints& no),
             hn::IfThenElse(hn::RebindMask(kI, m.part[p]), yes.part[p], no.part[p]))
 SF_BY_PARTS(Floats, floats_of, (const Ints& a), hn::ConvertTo(kF, a.part[p]))
 SF_BY_PARTS(Ints, bits_of_floats, (const Floats& a), hn::BitCast(kI, a.part[p]))
+SF_BY_PARTS(Floats, floats_with_bits, (const Ints& a), hn::BitCast(kF, a.part[p]))
+SF_BY_PARTS(Ints, lane_numbers, (), hn::Iota(kI, static_cast<std::int32_t>(p* kLanes)))
 SF_BY_PARTS(Floats, gather, (const float* from, const Ints& rows), hn::GatherIndex(kF, from, rows.part[p]))
 #undef SF_BY_PARTS
 
@@ -127,6 +132,16 @@ HWY_INLINE Mask mask_of(std::uint32_t bits) {
   for (std::size_t p = 0; p < kParts; ++p) out.part[p] = hn::LoadMaskBits(kF, bytes_of(bits >> (p * kLanes)).data());
   return out;
 }
+/// Loads sixteen pairs that follow each other.
+HWY_INLINE void load_pairs(const float* from, Floats& first, Floats& second) {
+  for (std::size_t p = 0; p < kParts; ++p)
+    hn::LoadInterleaved2(kF, from + 2 * p * kLanes, first.part[p], second.part[p]);
+}
+/// Nearest integer to v, plus kNearestBits; |v| < 2^22.
+constexpr std::int32_t kNearestBits = 0x4B400000;
+HWY_INLINE Ints nearest_bits(const Floats& v) { return bits_of_floats(v + all(0x1.8p23f)); }
+/// Largest integer up to v, or its neighbour where rounding decides; |v| < 2^22.
+HWY_INLINE Ints floor_near(const Floats& v) { return nearest_bits(v - all(0.5f)) - all(kNearestBits); }
 HWY_INLINE float least(const Floats& a) {
   auto v = a.part[0];
   for (std::size_t p = 1; p < kParts; ++p) v = hn::Min(v, a.part[p]);
