@@ -105,6 +105,32 @@ TEST(SpatialTerrain, NarrowTilesAroundTheHorizon) {
   EXPECT_GT(empty, 0u);
 }
 
+/// The horizon is computed for the directions that a scan has: parts of a scan read what all of it does.
+TEST(SpatialTerrain, PartsOfAScanAgreeWithTheWhole) {
+  constexpr std::uint32_t kColumns = 45, kRings = 12;
+  const auto beams = rings(kRings, kColumns, -1.5, 0.3, 2.0 * M_PI);
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    const HeightField field = waves(90, 70, 2.0, seed);
+    RigidTransform X_WS = Posed(seed, 0.3).X_WS;
+    X_WS.p = {40.3, 30.4, field.heights[field.at(40, 30)] + 1.5 * seed};
+    const SceneView scene = over(field);
+    const SpatialScan whole = cast(X_WS, beams, 60.0, scene, kColumns);
+    for (std::uint32_t width : {1u, 9u})
+      for (std::uint32_t first = 0; first < kColumns; first += width) {
+        std::vector<std::size_t> rows;
+        std::vector<glm::dvec3> part;
+        for (std::size_t i = 0; i < beams.size(); ++i)
+          if (i % kColumns / width == first / width) rows.push_back(i), part.push_back(beams[i]);
+        const SpatialScan scan = cast(X_WS, part, 60.0, scene, width);
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+          ASSERT_EQ(scan.ranges[k], whole.ranges[rows[k]]) << seed << " " << width << " " << rows[k];
+          ASSERT_EQ(scan.hits[k], whole.hits[rows[k]]);
+          ASSERT_EQ(scan.quality[k], whole.quality[rows[k]]);
+        }
+      }
+  }
+}
+
 /// No beam passes between cells or their triangles: at points of the grid, on edges, on diagonals. From above, none of
 /// these meets the terrain at an outline, so none has a flag.
 TEST(SpatialTerrain, IsWatertight) {
