@@ -76,10 +76,9 @@ HWY_INLINE Mask may_cover_row(const float (&edges)[12][kWidth], const Floats& er
     const Floats x = load(edges[k]), y = load(edges[k + 1]), z = load(edges[k + 2]);
     const Floats rise = dot(x, y, z, box[3], box[4], box[5]);
     const Floats high = dot(x, y, z, box[0], box[1], box[2]) + absolute(dot(x, y, z, box[6], box[7], box[8])) + error;
-    const Floats size = larger(absolute(rise), all(1e-30f));
-    const Floats end = high * turned(all(1.0f) / size, rise);  // the edge is at a = -end
+    const Floats end = high / larger(absolute(rise), all(1e-30f));  // the edge is there along U, or against it
     const Mask up = at_least(rise, all(0.0f));
-    from = larger(from, select(up, all(0.0f) - end, from)), to = smaller(to, select(up, to, all(0.0f) - end));
+    from = larger(from, select(up, all(0.0f) - end, from)), to = smaller(to, select(up, to, end));
   }
   return at_least(to + all(1e-5f), from);
 }
