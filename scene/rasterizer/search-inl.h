@@ -331,7 +331,7 @@ void Search::step_cells() {
 /// @param moving beams that go on  @param clear those that pass, to `next`; others try a smaller block from there
 /// @param room [m] height above the surface up to there
 void Search::move(const Crossing& at, const Mask& moving, const Mask& clear, const Floats& next, const Floats& room) {
-  const Ints one = all(1), zero = all(0), size = one << level_;
+  const Ints one = all(1), size = one << level_;
   const Ints high_x = smaller(at.low_x + size, cells_x_) - one, high_y = smaller(at.low_y + size, end_y_) - one;
   const Ints place_x = smaller(larger(x_at(next), at.low_x), high_x);
   const Ints place_y = smaller(larger(y_at(next), at.low_y), high_y);
