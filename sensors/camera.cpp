@@ -22,7 +22,8 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr std::uint32_t kNoiseId = 1u << 31;  ///< added to the numbers of cameras, in the random numbers of lidars
+constexpr std::uint32_t kNoiseId = 1u << 31;       ///< added to the numbers of cameras, in the random numbers of lidars
+constexpr std::uint32_t kDepthNoiseId = 3u << 30;  ///< the same for depths
 
 /// Range of the longest beam to the largest depth, over that depth.
 double stretch(const CameraSettings& s) {
@@ -77,6 +78,7 @@ class Cameras : public SpatialScans {
               const scene::TileSurfaces& surfaces, unsigned thread) override;
   void finish(std::size_t sample, unsigned thread) override;
   void write_pixels(std::size_t sample);
+  void add_depth_noise(std::size_t sample);
   std::uint32_t color_of(std::size_t sample, std::size_t pixel, std::span<const glm::vec3> light) const;
 
   const std::vector<CameraSettings>& settings_;
@@ -194,6 +196,7 @@ void flag_near(double least, std::span<double> values, std::size_t step, std::sp
 
 void Cameras::finish(std::size_t i, unsigned) {
   if (!scanner_of(i).plain) write_pixels(i);
+  if (noise_ && settings_[samples()[i].row].depth_noise > 0.0) add_depth_noise(i);
   if (const double least = settings_[samples()[i].row].range_min; least > 0.0)
     flag_near(least, samples()[i].values, settings_[samples()[i].row].columns(), quality_of(i));
 }
@@ -222,6 +225,24 @@ void Cameras::write_pixels(std::size_t i) {
   }
 }
 
+/// Surfaces that noise moves beyond the largest depth are not seen.
+void Cameras::add_depth_noise(std::size_t i) {
+  const HostSample& sample = samples()[i];
+  const CameraSettings& s = settings_[sample.row];
+  const SensorSpec& row = rows()[sample.row];
+  const base::RandomKey key =
+      episodes().key(base::RandomStream::spatial_range, row.mover, kDepthNoiseId + row.sensor, sample.sequence);
+  const auto hits = hits_of(i);
+  for (std::size_t k = 0; k < hits.size(); ++k) {
+    if (hits[k] == base::kNoHit) continue;
+    double& depth = sample.values[k * s.columns()];
+    depth = std::max(0.0,
+                     depth + s.depth_sigma(depth) * base::random_normal(key, static_cast<std::uint32_t>(k / 2))[k % 2]);
+    if (depth < s.range_max) continue;
+    depth = s.range_max, hits[k] = base::kNoHit;
+  }
+}
+
 ParsedSensors parse_cameras(const world::World& world) {
   CameraReader reader;
   BeamBudget budget(world, "cameras", "pixels, 'samples',");
@@ -237,6 +258,7 @@ ParsedSensors parse_cameras(const world::World& world) {
     row.X_MS = planar_mount(s.X_MS);
     row.limit = s.range_max;
     row.range_min = s.range_min;
+    row.sigma = s.depth_sigma(s.range_max);
     const double reach = s.range_max * stretch(s);
     if (!(s.rgb && sunny)) row.reach = reach;  // shadows come from anywhere
     // Else readings also depend on these, on earlier poses, or on noise in colours.
@@ -253,6 +275,11 @@ SpatialBeams beams_of_camera(const ParsedSensors& sensors, std::size_t row) {
 
 ErrorBound bound_of_camera(const world::World&, const ParsedSensors& sensors, std::size_t row) {
   return {error_of(sensors.settings_as<CameraSettings>()[row]), ""};
+}
+
+/// The noise of a depth grows with its square: no standard deviation is that of all.
+double noise_of_camera(const ParsedSensors& sensors, std::size_t row, std::uint32_t offset) {
+  return offset == 0 && sensors.settings_as<CameraSettings>()[row].depth_noise == 0.0 ? 0.0 : HUGE_VAL;
 }
 
 // Depths are sent as the ranges of lidars are, colours as a file (sensors/image_packets.h). Normals are not sent.
@@ -327,6 +354,7 @@ constinit const SensorType camera_type{
     .beams = beams_of_camera,
     .modes = kCameraModes,
     .bound = bound_of_camera,
+    .noise = noise_of_camera,
     .parse = parse_cameras,
     .make = make_backend<Cameras>,
     .wire_problem = wire_problem,

@@ -20,6 +20,7 @@ constexpr double kMostFov = 170.0 * kPerDegree;
 constexpr std::uint32_t kMostSamples = 64;
 constexpr std::uint32_t kMostCameraBeams = 4'000'000;  ///< of one camera
 constexpr double kMostFocal = 1e6;                     ///< [px]
+constexpr double kMostDepthNoise = 0.25;               ///< [-] of the largest depth, whose noise is never below 0 then
 
 void read_resolution(const world::Sensor& sensor, CameraSettings& s) {
   if (const auto size = tuple(sensor, "resolution", 2, "[width height]")) {
@@ -94,6 +95,11 @@ void read_depths(const world::Sensor& sensor, CameraSettings& s) {
   if (const auto range = tuple(sensor, "range", 2, "[min max]"))
     s.range_min = sensor.metres_per_unit * (*range)[0], s.range_max = sensor.metres_per_unit * (*range)[1];
   require_range(sensor, "range", "depths", s.range_min, s.range_max, 1e4);
+  s.depth_noise = length(sensor, "depth_noise", 0.0, 0.0, 1e3);  // at 1 m
+  if (const double share = s.depth_noise * s.range_max; !(share <= kMostDepthNoise))
+    refuse(sensor, "depth_noise",
+           fmt::format("a standard deviation of {:.3g} m at the largest depth, {:g} m; expected at most {:g} of it",
+                       s.depth_sigma(s.range_max), s.range_max, kMostDepthNoise));
 }
 
 void read_colours(const world::Sensor& sensor, CameraSettings& s) {

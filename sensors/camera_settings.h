@@ -20,6 +20,7 @@ struct CameraSettings {
   std::uint32_t width = 320, height = 240;  ///< [px]
   base::Lens lens;
   double range_min = 0.0, range_max = 50.0;  ///< [m] of the depth along the optical axis
+  double depth_noise = 0.0;  ///< [1/m] >= 0, standard deviation of depths over their squares, as of stereo cameras
   bool normals = false;
   std::uint8_t mode = 0;      ///< row of kCameraModes
   bool rgb = false;           ///< pixels have colours
@@ -41,13 +42,14 @@ struct CameraSettings {
   bool is_plain() const { return samples == 1 && gain == 1.0 && vignetting == 0.0 && !is_noisy(); }
   int jpeg_quality() const { return jpeg > 0 ? jpeg : base::kJpegQuality; }  ///< of files that are to be JPEG
   base::ColorFormat format() const { return {width, height, mono, jpeg}; }
-  bool is_noisy() const { return read_noise > 0.0 || shot_noise > 0.0; }
+  bool is_noisy() const { return read_noise > 0.0 || shot_noise > 0.0; }          ///< of colours
+  double depth_sigma(double depth) const { return depth_noise * depth * depth; }  ///< [m] standard deviation
 };
 
-inline constexpr std::string_view kCameraKeys[] = {"resolution", "fov",        "focal",    "principal", "distortion",
-                                                   "fisheye",    "range",      "normals",  "rgb",       "mono",
-                                                   "jpeg",       "samples",    "exposure", "rolling",   "scan_time",
-                                                   "gain",       "vignetting", "noise",    "pose6",     "pantilt"};
+inline constexpr std::string_view kCameraKeys[] = {
+    "resolution", "fov",  "focal",      "principal", "distortion", "fisheye",  "range",
+    "normals",    "rgb",  "mono",       "jpeg",      "samples",    "exposure", "rolling",
+    "scan_time",  "gain", "vignetting", "noise",     "pose6",      "pantilt",  "depth_noise"};
 
 /// Reads the settings of cameras. Cameras with equal images share their beams.
 class CameraReader {

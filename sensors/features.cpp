@@ -9,13 +9,14 @@
 
 #include "base/echo.h"
 #include "base/elementary.h"
+#include "sensors/beam_columns.h"
+#include "sensors/camera.h"
 #include "sensors/cones/rangers.h"
 #include "sensors/fiducial.h"
 #include "sensors/infrared.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
 #include "sensors/lidar.h"
-#include "sensors/lidar_columns.h"
 #include "sensors/plain_packets.h"
 #include "sensors/pose_sensor.h"
 #include "sensors/settings.h"
@@ -61,19 +62,18 @@ class LaserFeatures final : public FeatureSource {
   std::vector<double> ranges_;
 };
 
-class LidarFeatures final : public FeatureSource {
+/// Of lidars and of cameras.
+class ColumnFeatures final : public FeatureSource {
  public:
-  /// @param width numbers per beam
-  LidarFeatures(const LidarSettings& lidar, std::size_t width, const estimation::FeatureOptions& options)
-      : columns_(lidar, width),
-        finder_(columns_.X_MS(), columns_.bearings(), {lidar.echo.sigma, lidar.echo.proportional, 0.0}, options) {}
+  ColumnFeatures(BeamColumns columns, const estimation::EchoNoise& noise, const estimation::FeatureOptions& options)
+      : columns_(std::move(columns)), finder_(columns_.X_MS(), columns_.bearings(), noise, options) {}
 
   std::span<const Feature> find(const sensorfarm::Reading& reading) override {
     return finder_.find(columns_.ranges(reading));
   }
 
  private:
-  LidarColumns columns_;
+  BeamColumns columns_;
   estimation::ScanFeatures finder_;
 };
 
@@ -193,18 +193,19 @@ estimation::FeatureOptions feature_options(const world::Sensor& settings) {
 std::unique_ptr<sensorfarm::DerivedSensor> make_features(const DerivedContext& context) {
   if (context.inputs.size() != 1 || context.inputs[0].mover != context.spec.mover)
     refuse(context.settings, "inputs",
-           "features are those of one laser, lidar, sonar, infrared or fiducial of its own robot");
+           "features are those of one laser, lidar, camera, sonar, infrared or fiducial of its own robot");
   auto source = feature_source(context.world, context.inputs[0], feature_options(context.settings));
   if (source == nullptr)
-    refuse(context.settings, "inputs",
-           fmt::format("{} has no features; expected a laser, a lidar with rings, sonar, infrared or fiducial",
-                       context.site.inputs[0].sensor.type));
+    refuse(
+        context.settings, "inputs",
+        fmt::format("{} has no features; expected a laser, a lidar with rings, a camera, sonar, infrared or fiducial",
+                    context.site.inputs[0].sensor.type));
   return std::make_unique<FeaturesSensor>(std::move(source), context.site.inputs[0].sensor.X_RS);
 }
 
-constexpr std::string_view kRangeColumns[] = {"range_m"},
+constexpr std::string_view kRangeColumns[] = {"range_m"}, kDepthColumns[] = {"depth_m"},
                            kTagColumns[] = {"id", "fiducial_type", "range_m", "bearing_rad", "orientation_rad"};
-constexpr DerivedPort kPorts[] = {{"ranges", kRangeColumns}, {"fiducial", kTagColumns}};
+constexpr DerivedPort kPorts[] = {{"ranges", kRangeColumns}, {"depths", kDepthColumns}, {"fiducial", kTagColumns}};
 constexpr DerivedForm kDerived{.ports = kPorts, .quantities = 3, .covariance = true, .extra = 4, .make = make_features};
 
 constexpr std::string_view kKeys[] = {kDerivedKeys[0], kDerivedKeys[1], "most", "shortest", "widest", "objects"};
@@ -239,14 +240,24 @@ std::unique_ptr<FeatureSource> feature_source(const world::World& world, const W
     require_level(world, laser, "'features'");
     return std::make_unique<LaserFeatures>(laser, options);
   }
-  if (input.type != kLidar && input.type != kSonar && input.type != kInfrared && input.type != kFiducial)
-    return nullptr;
+  constexpr std::uint8_t kOthers[] = {kLidar, kCamera, kSonar, kInfrared, kFiducial};
+  if (std::ranges::find(kOthers, input.type) == std::end(kOthers)) return nullptr;
   const world::Sensor& settings = input_settings(world, input);
+  if (input.type == kCamera) {
+    CameraReader reader;
+    const CameraSettings camera = reader.read(settings);
+    BeamColumns columns(camera);
+    const double angle = columns.step() / std::sqrt(12.0);  // of a pixel somewhere in its column
+    return std::make_unique<ColumnFeatures>(
+        std::move(columns), estimation::EchoNoise{.angle = angle, .squared = kColumnNoise * camera.depth_noise},
+        options);
+  }
   if (input.type == kLidar) {
     LidarReader reader;
     const LidarSettings lidar = reader.read(world, settings);
     if (lidar.beams->channels < 2) return nullptr;
-    return std::make_unique<LidarFeatures>(lidar, lidar.echo.width, options);
+    return std::make_unique<ColumnFeatures>(BeamColumns(lidar),
+                                            estimation::EchoNoise{lidar.echo.sigma, lidar.echo.proportional}, options);
   }
   if (input.type == kFiducial) {
     base::Pose X_MS = common_spec(settings, input.mover, input.sensor).X_MS;

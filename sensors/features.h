@@ -3,10 +3,10 @@
 //
 // In a world file, inside a robot:
 //   derived( type "features"  inputs ["laser"]  rate 10  most 16  shortest 0.3  widest 1  objects [4.2 1.7] )
-// Input: one laser, lidar, sonar, infrared or fiducial of the same robot. `most`: rows of a reading. `shortest`: [m]
-// shorter straight pieces are no lines. `widest`: [m] wider remains are no clusters. `objects`: [m] length and width of
-// objects, to which clusters are completed that fit; default: there are none. Of a lidar, features are those of the
-// nearest echoes above the ground (sensors/lidar_columns.h).
+// Input: one laser, lidar, camera, sonar, infrared or fiducial of the same robot. `most`: rows of a reading.
+// `shortest`: [m] shorter straight pieces are no lines. `widest`: [m] wider remains are no clusters. `objects`: [m]
+// length and width of objects, to which clusters are completed that fit; default: there are none. Of a lidar or of a
+// camera's depths, features are those of the nearest echoes above the ground (sensors/beam_columns.h).
 //
 // A reading is `most` rows, the nearest feature to the sensor first: x and y in the frame of the robot, direction,
 // `valid`, their covariance, then kind (estimation::FeatureKind), half length, id of a tag, and age: the time since the
@@ -32,7 +32,7 @@ class FeatureSource {
   /// Valid until the next call.
   virtual std::span<const estimation::Feature> find(const sensorfarm::Reading& reading) = 0;
 };
-/// @return null for sensors other than lasers, lidars with rings, sonars, infrareds and fiducials
+/// @return null for sensors other than lasers, lidars with rings, cameras, sonars, infrareds and fiducials
 /// @throws base::InputError for invalid settings
 std::unique_ptr<FeatureSource> feature_source(const world::World& world, const WiredInput& input,
                                               const estimation::FeatureOptions& options);

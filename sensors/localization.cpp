@@ -8,6 +8,7 @@
 
 #include "base/elementary.h"
 #include "base/error.h"
+#include "robots/car_model.h"
 #include "sensors/fiducial.h"
 #include "sensors/imu.h"
 #include "sensors/plain_packets.h"
@@ -168,11 +169,18 @@ PositionSensors position_inputs(const DerivedContext& context) {
   return sensors;
 }
 
+/// The localization knows where the axles are, and takes the tyres for those of a passenger car on dry asphalt.
+estimation::LocalizationOptions::Tyres tyres_of(const world::Mover& mover) {
+  const robots::CarModel car;
+  return {.axle = 0.5 * mover.wheelbase, .sideslip = car.rear_load() / (car.rear_cornering() * robots::kGravity)};
+}
+
 estimation::LocalizationOptions localization_options(const world::Mover& mover, const PositionSensors& sensors) {
   estimation::LocalizationOptions options{.sideways = mover.drive == world::Drive::omni};
   if (const auto& wheels = sensors.wheels)
     options.encoder = {
         .per_count = wheels->per_count, .angle_step = wheels->angle_step, .slip = wheels->slip, .track = wheels->track};
+  if (mover.dynamics.name == "car" && mover.drive == world::Drive::car) options.tyres = tyres_of(mover);
   if (sensors.gyro) options.gyro = {sensors.gyro->noise, sensors.gyro->bias, sensors.gyro->scale_error};
   // Receivers without noise still have the error of their latency and of rounding.
   if (sensors.gps) options.gps_noise = std::max(sensors.gps->noise, 1e-3);

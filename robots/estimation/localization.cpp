@@ -134,6 +134,8 @@ Localization::Localization(const LocalizationOptions& options)
 WheeledModel Localization::model_of(const LocalizationOptions& options, bool encoder) {
   WheeledModel model{.motion = encoder ? differential_drive(4.0, 40.0) : differential_drive(), .steps = encoder};
   if (options.sideways) model.motion.left = model.motion.forward;
+  if (const auto& tyres = options.tyres)
+    model.axle = tyres->axle, model.sideslip = tyres->sideslip, model.drift = tyres->drift;
   if (!options.encoder) return model;
   model.track = options.encoder->track;
   model.slip = options.encoder->slip;

@@ -41,7 +41,14 @@ struct LocalizationOptions {
     double bias = 8.7e-3;   ///< [rad/s] >= 0 standard deviation of the constant offset
     double scale = 0.0;     ///< [-] >= 0 standard deviation of the constant error of its scale
   };
+  /// A car on tyres: bends move its origin sideways, and slopes and accelerations change the slip of its wheels.
+  struct Tyres {
+    double axle = 0.0;      ///< [m] from the rear axle to the origin
+    double sideslip = 0.0;  ///< [s^2/m] >= 0 slip angle of the rear tyres over the lateral acceleration
+    double drift = 3e-3;    ///< [s^(-1/2)] >= 0 standard deviation of the change of a wheel's scale after one second
+  };
   std::optional<Encoder> encoder;  ///< nullopt: no encoders
+  std::optional<Tyres> tyres;      ///< nullopt: none of this
   Gyro gyro;
   double gps_noise = 1.5;  ///< [m] > 0 standard deviation of a range
   bool sideways = false;   ///< the robot can drive sideways (omni)

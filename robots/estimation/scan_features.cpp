@@ -74,7 +74,8 @@ void ScanFeatures::place_echoes(std::span<const double> ranges) {
     const double range = ranges[i];
     if (!(range > 0.0 && range < 1e6)) continue;
     const glm::dvec2 sight = base::rotate(X_MS_.yaw + bearings_[i], {1.0, 0.0});
-    const double along = square_of(base::hypot(noise_.constant, noise_.proportional * range, kLeastEchoSigma));
+    const double along = square_of(base::hypot(noise_.constant, noise_.proportional * range, kLeastEchoSigma)) +
+                         square_of(noise_.squared * range * range);
     echoes_.push_back({glm::dvec2{X_MS_.x, X_MS_.y} + range * sight, sight, along,
                        square_of(noise_.angle * range) + square_of(kLeastEchoSigma), step_ * range, i});
   }

@@ -35,6 +35,7 @@ struct Feature {
 struct EchoNoise {
   double constant = 0.0, proportional = 0.0;  ///< [m], [-] of the range, as in raycast::ScanNoise
   double angle = 0.0;                         ///< [rad] of the bearing
+  double squared = 0.0;                       ///< [1/m] of the range, grows with its square
 };
 
 struct FeatureOptions {

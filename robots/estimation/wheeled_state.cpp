@@ -31,6 +31,18 @@ Motion motion_of(const WheeledState& state) {
   return {{m[kX], m[kY], state.z, m[kYaw]}, {m[kForward], m[kLeft], m[kTurn]}};
 }
 
+/// [m] Speed sideways per turn rate: steady motion of a single-track model, whose rear tyres slip outwards.
+double lever_of(const WheeledModel& model, const WheeledState& state) {
+  return model.axle - model.sideslip * state.mean[kForward] * state.mean[kForward];
+}
+
+/// The motion of the origin. Of the state alone, `left` is without that of turns.
+Motion motion_of(const WheeledModel& model, const WheeledState& state) {
+  Motion motion = motion_of(state);
+  motion.velocity.left += lever_of(model, state) * motion.velocity.turn;
+  return motion;
+}
+
 /// [m/s] Speeds of the left and the right wheel over ground.
 std::array<double, 2> wheel_speeds(const WheeledModel& model, const WheeledState& state) {
   const double half = 0.5 * model.track * state.mean[kTrackScale] * state.mean[kTurn];
@@ -40,8 +52,12 @@ std::array<double, 2> wheel_speeds(const WheeledModel& model, const WheeledState
 /// Returns the rows that differ from the identity of the derivative of the state after `dt` with respect to `state`.
 MovedRows derivative(const WheeledModel& model, const WheeledState& state, double dt) {
   MovedRows F = MovedRows::Identity();
-  const std::array<double, 36> planar = jacobian(model.motion.path, motion_of(state), dt);
+  const std::array<double, 36> planar = jacobian(model.motion.path, motion_of(model, state), dt);
   F.topLeftCorner<6, 6>() = Eigen::Map<const Matrix6>(planar.data());
+  for (const int k : {kX, kY}) {
+    F(k, kForward) -= 2.0 * model.sideslip * state.mean[kForward] * state.mean[kTurn] * F(k, kLeft);
+    F(k, kTurn) += lever_of(model, state) * F(k, kLeft);
+  }
   const std::array<double, 2> speeds = wheel_speeds(model, state);
   for (const int right : {0, 1}) {
     const double scale = state.mean[kLeftScale + right], half = (right == 0 ? -0.5 : 0.5) * model.track;
@@ -56,9 +72,9 @@ MovedRows derivative(const WheeledModel& model, const WheeledState& state, doubl
 
 WheeledState move(const WheeledModel& model, const WheeledState& from, double dt) {
   WheeledState to = from;
-  const Motion moved = estimation::move(model.motion.path, motion_of(from), dt);
+  const Motion moved = estimation::move(model.motion.path, motion_of(model, from), dt);
   const auto& [X, v] = moved;
-  const std::array<double, 6> motion{X.x, X.y, X.yaw, v.forward, v.left, v.turn};
+  const std::array<double, 6> motion{X.x, X.y, X.yaw, v.forward, from.mean[kLeft], v.turn};
   std::copy(motion.begin(), motion.end(), to.mean.begin());
   const std::array<double, 2> speeds = wheel_speeds(model, from);
   for (const int right : {0, 1}) to.mean[kLeftRolled + right] += from.mean[kLeftScale + right] * speeds[right] * dt;

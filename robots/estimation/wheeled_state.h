@@ -33,10 +33,12 @@ struct WheeledModel {
   /// Speeds change at once after a reading and are then constant until the next, as between commands; the mean speed
   /// from the encoders is then the speed itself. False: they change continuously.
   bool steps = true;
-  double track = 0.3;        ///< [m] > 0, nominal
-  double slip = 0.005;       ///< [m^(1/2)] >= 0 standard deviation of a wheel's slip after one metre
-  double skid = 0.0003;      ///< [m^(1/2)] >= 0 standard deviation of a sideways skid after one metre
-  double drift = 1e-6;       ///< [s^(-1/2)] >= 0 standard deviation of the change of a scale after one second
+  double track = 0.3;     ///< [m] > 0, nominal
+  double slip = 0.005;    ///< [m^(1/2)] >= 0 standard deviation of a wheel's slip after one metre
+  double axle = 0.0;      ///< [m] from the rear axle to the origin, which turns move sideways
+  double sideslip = 0.0;  ///< [s^2/m] >= 0 slip angle of the rear tyres over the lateral acceleration, in steady turns
+  double skid = 0.0003;   ///< [m^(1/2)] >= 0 standard deviation of a sideways skid after one metre
+  double drift = 1e-6;    ///< [s^(-1/2)] >= 0 standard deviation of the change of a scale after one second
   double bias_drift = 1e-5;  ///< [rad s^(-3/2)] >= 0 the same of the gyro's bias
 };
 

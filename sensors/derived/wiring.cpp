@@ -79,10 +79,15 @@ class Wiring {
 
 const WiredGroup& Wiring::group_of(const DerivedNode& node, std::string_view type) const {
   std::vector<std::string_view> names;
+  const WiredGroup* called = nullptr;  // "camera": the robot's, or poses from overhead ones, as a port accepts
   for (const WiredGroup& group : groups_) {
-    if (is_called(*group.type, type)) return group;
     names.push_back(group.type->name);
+    if (!is_called(*group.type, type)) continue;
+    const auto fits = [&](const DerivedPort& port) { return accepts(port, *group.type); };
+    if (std::ranges::any_of(node.type->derived->ports, fits)) return group;
+    if (called == nullptr) called = &group;
   }
+  if (called != nullptr) return *called;
   refuse_input(node, fmt::format("no robot of this world has a sensor of type '{}'; there are: {}{}", type,
                                  fmt::join(names, ", "), base::suggest(type, names)));
 }

@@ -43,7 +43,8 @@ std::vector<std::vector<double>> locations(const world::World& world, Simulation
 }
 
 TEST(CameraInputs, ReachDerivedSensorsLateAndStopInOutages) {
-  const world::World world = seen_world();
+  // Where a robot has a camera of its own, "camera" is still what the sensor expects.
+  const world::World world = seen_world(" position( name \"eye\" pose [9 9 0 0] camera( resolution [4 3] ) )");
   std::vector<base::Pose> truth;
   PositioningOptions positioning;
   positioning.link.delay = 0.2;

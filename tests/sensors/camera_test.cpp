@@ -316,6 +316,47 @@ TEST(Camera, NoiseAndVignetting) {
   EXPECT_EQ(light_of("rgb 1 noise [0.02 0.001]", false, 0), even);
 }
 
+/// Errors of depths over depth_noise times their squares are Gaussian, from pixel to pixel and from reading to reading.
+TEST(Camera, DepthNoiseGrowsWithTheSquare) {
+  const world::World world = boards("resolution [100 60] fov 70 range [0 9.5] depth_noise 0.005");
+  const Image exact = shoot(world);
+  farm::Farm farm(world, host_device(), {.seed = 3, .threads = 1});
+  farm.subscribe(0, base::only(sensors::kCamera));
+  std::vector<std::vector<double>> readings;
+  base::Report state{0, 0, world.movers[0].X_WM, {}};
+  for (int k = 0; k < 2; ++k, state.time += 100'000'000)
+    for (const base::ReadingBlock& r : farm.tick(state.time, std::span(&state, 1))) {
+      readings.emplace_back(r.values.begin(), r.values.end());
+      EXPECT_DOUBLE_EQ(r.sigma, 0.005 * 9.5 * 9.5) << "the largest";
+      EXPECT_EQ(r.bound, HUGE_VAL);
+      EXPECT_EQ(r.bound_without_noise, exact.bound);
+      for (std::size_t i = 0; i < r.hits.size(); ++i) EXPECT_EQ(r.hits[i] == base::kNoHit, r.values[i] == 9.5) << i;
+    }
+  ASSERT_EQ(readings.size(), 2u);
+  EXPECT_NE(readings[0], readings[1]);
+  const auto stated = [](const world::World& of) {
+    const sensors::SensorSet set(of);
+    const auto& group = *set.group(sensors::kCamera);
+    return sensors::own_noise(group, group.rows[0], 0);
+  };
+  EXPECT_EQ(stated(world), HUGE_VAL) << "a fault that multiplies it is refused";
+  EXPECT_EQ(stated(boards("resolution [4 4]")), 0.0);
+  double sum = 0.0, squares = 0.0, both = 0.0, n = 0.0, far = 0.0, lost = 0.0, outside = 0.0;
+  for (std::size_t i = 0; i < exact.hits.size(); ++i) {
+    const double z = exact.values[i], scale = 1.0 / (0.005 * z * z);
+    far += exact.hits[i] == 1, lost += exact.hits[i] == 1 && readings[0][i] == 9.5;
+    if (z > 7.5) continue;  // more than five standard deviations below the largest depth
+    const double a = scale * (readings[0][i] - z), b = scale * (readings[1][i] - z);
+    ++n, sum += a, squares += a * a, both += a * b, outside += std::abs(a) > 2.0;
+  }
+  ASSERT_GT(n, 1000.0);
+  EXPECT_NEAR(sum / n, 0.0, 5.0 / std::sqrt(n));
+  EXPECT_NEAR(squares / n, 1.0, 5.0 * std::sqrt(2.0 / n));
+  EXPECT_NEAR(outside / n, 0.0455, 5.0 * std::sqrt(0.0455 / n));
+  EXPECT_NEAR(both / n, 0.0, 5.0 / std::sqrt(n)) << "of each reading";
+  EXPECT_NEAR(lost / far, 0.1085, 5.0 * std::sqrt(0.1 / far)) << "0.5 m beyond 9 m are 1.235 standard deviations";
+}
+
 /// Luminance of linear light, of one sample and of several; noise has one number per pixel.
 TEST(Camera, GreyIsTheLuminance) {
   const std::string keys = "resolution [40 30] fov 80 range [0 50] ";
@@ -477,6 +518,9 @@ TEST(Camera, ImpossibleSettingsAreRefused) {
   expect_in("a focal length of 1e-09 px", refused("focal 1e-9"));
   expect_in("a focal length of 0.5 px; expected 1 to", refused("focal 0.5 fisheye [0 0 0 0]"));
   expect_in("depths from 5 to 5 m", refused("range [5 5]"));
+  expect_in("'depth_noise'", refused("depth_noise -0.1"));
+  expect_in("trial.world:2: a standard deviation of 15 m at the largest depth, 50 m; expected at most 0.25 of it",
+            refused("depth_noise 0.006"));
   expect_in("expected 'rolling 1' with it", refused("scan_time 0.1"));
   expect_in("'samples' changes colours; expected 'rgb 1' or 'mono 1'", refused("samples 4"));
   expect_in("'jpeg' changes colours; expected 'rgb 1' or 'mono 1'", refused("jpeg 90"));

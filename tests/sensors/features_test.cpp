@@ -102,6 +102,51 @@ TEST(Features, OfALidarAreAboveTheGroundAndBelowBridges) {
   EXPECT_NEAR(rows[1][0], 14.9, 0.15);
 }
 
+/// Returns the valid features that a camera 1.3 m above the floor sees in the models, over ten readings.
+std::vector<Rows> in_image_of(const std::string& models, const std::string& more = "") {
+  const world::World world = world::build_world(
+      "featured.world",
+      "define bot position( size [0.3 0.3 1.3] drive \"diff\" camera( resolution [320 120] fov 70 range [0.3 40] " +
+          more +
+          " pose6 [0 0 0 0 5 0] size [0 0 0] ) derived( type \"features\" inputs [\"camera\"] shortest 5.5 widest 5 "
+          "objects [4.2 1.7] ) )\nbot( name \"r0\" pose [0 0 0 0] )\n" +
+          models,
+      {.sensors = sensors::world_file_words()});
+  std::vector<Rows> all = readings_of(world);
+  for (Rows& rows : all) std::erase_if(rows, [](const auto& row) { return row[3] == 0.0; });
+  return all;
+}
+
+TEST(Features, OfADepthImageAreAboveTheGroundAndInTheRobotsFrame) {
+  EXPECT_TRUE(in_image_of("").back().empty()) << "neither the floor nor pixels without a surface are obstacles";
+  const Rows wall = in_image_of("model( pose [12 0 0 0] size [0.2 6 3] )\n").back();
+  ASSERT_EQ(wall.size(), 1u);
+  EXPECT_EQ(wall[0][sensors::kFeatureKindAt], 1.0);
+  EXPECT_NEAR(wall[0][0], 11.9, 0.01);
+  EXPECT_NEAR(std::abs(wall[0][2]), 0.5 * M_PI, 0.01) << "across";
+  EXPECT_NEAR(wall[0][sensors::kFeatureKindAt + 1], 3.0, 0.06);
+  // Aside, depth along the optical axis is shorter than the range, here by 1.2 m.
+  const Rows car = in_image_of("model( pose [14 6 0 20] size [4.2 1.7 1.4] )\n").back();
+  ASSERT_EQ(car.size(), 1u);
+  EXPECT_EQ(car[0][sensors::kFeatureKindAt], 5.0) << "as large as a car";
+  EXPECT_NEAR(car[0][0], 14.0, 0.3);
+  EXPECT_NEAR(car[0][1], 6.0, 0.3);
+}
+
+/// The nearest of a column's depths would be off by its noise: the mean of them is not.
+TEST(Features, OfNoisyDepthsAreNotTooNear) {
+  constexpr double kWall = 19.9, kSigma = 0.001 * kWall * kWall;  // [m]
+  double sum = 0.0, count = 0.0;
+  for (const Rows& rows : in_image_of("model( pose [20 0 0 0] size [0.2 8 3] )\n", "depth_noise 0.001"))
+    for (const auto& row : rows) {
+      if (row[sensors::kFeatureKindAt] != 1.0) continue;
+      ++count, sum += row[0];
+      EXPECT_NEAR(row[0], kWall, 4.0 * std::sqrt(row[4])) << "as stated";
+    }
+  ASSERT_GE(count, 8.0) << "of ten readings";
+  EXPECT_NEAR(sum / count, kWall, 0.3 * kSigma);
+}
+
 TEST(Features, OfConesStateTheirWidth) {
   const auto all = readings_of(featured(
       "sonar( scount 2 spose[0] [0.1 0 0] spose[1] [0 0 180] fov 20 range [0.1 4] rate 10 )", "inputs [\"sonar\"]"));
@@ -149,7 +194,7 @@ TEST(Features, RefusesWhatHasNone) {
     return refusal_of([&] { const sensors::SensorSet all(featured(kScanner + " gyro( ) laneedge( )", more)); });
   };
   EXPECT_EQ(refusal("inputs [\"laser\"]"), "");
-  expect_in("expected ranges (range_m) or fiducial", refusal("inputs [\"gyro\"]"));
+  expect_in("expected ranges (range_m) or depths (depth_m) or fiducial", refusal("inputs [\"gyro\"]"));
   expect_in("'laser' is listed twice", refusal("inputs [\"laser\" \"laser\"]"));
   expect_in("'most'", refusal("inputs [\"laser\"] most 23"));
   expect_in("'shortest'", refusal("inputs [\"laser\"] shortest 0"));

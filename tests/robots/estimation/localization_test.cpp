@@ -113,6 +113,39 @@ TEST(Localization, LearnsASlipThatLasts) {
   }
 }
 
+/// A car in bends, with satellites. Its origin moves sideways, as that of a single-track model, and the
+/// scales of its wheels drift. Filters that know of one or none of these are overconfident.
+TEST(Localization, CoversTheSlipOfACar) {
+  using Tyres = LocalizationOptions::Tyres;
+  constexpr double kSpeed = 14.0, kLever = 1.2 - 0.0047 * kSpeed * kSpeed;
+  const std::array<std::optional<Tyres>, 4> kKnown{Tyres{1.2, 0.0047}, Tyres{1.2, 0.0047, 1e-6}, Tyres{1.2, 0.0}, {}};
+  std::array<double, 4> nees{};
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    DrivenRobot car{.track = 1.4, .slip = 5e-4, .random = std::mt19937_64(seed)};
+    std::vector<Localization> filters;
+    for (const auto& tyres : kKnown)
+      filters.push_back(started({.encoder = LocalizationOptions::Encoder{.slip = 5e-4, .track = 1.4},
+                                 .tyres = tyres,
+                                 .gyro = {.bias = 1e-4},
+                                 .gps_noise = 1.0}));
+    for (int k = 0; k < 400; ++k) {
+      const double turn = 0.18 * std::sin(0.02 * k), drift = car.normal(3e-3 * std::sqrt(0.1));
+      car.left_scale += drift, car.right_scale += drift;
+      car.drive({kSpeed, kLever * turn, turn}, kTick);
+      const double rate = turn + car.normal(1.7e-3), x = car.X_WM.x + car.normal(1.0), y = car.X_WM.y + car.normal(1.0);
+      for (Localization& filter : filters) {
+        car.add_encoder(filter), filter.add_gyro(car.time, rate);
+        if (k % 2 == 0) filter.add_gps(car.time, x, y, std::sqrt(2.0));
+      }
+    }
+    for (std::size_t f = 0; f < filters.size(); ++f)
+      nees[f] += pose_nees(filters[f].predict(car.time), car.X_WM) / (3.0 * kSeeds);
+  }
+  EXPECT_GT(nees[0], instrumented() ? 0.3 : 0.7);
+  EXPECT_LT(nees[0], instrumented() ? 2.0 : 1.3);
+  for (std::size_t f = 1; f < nees.size(); ++f) EXPECT_GT(nees[f], 1.5 * nees[0]) << f;
+}
+
 TEST(Localization, SeparatesTheTrackFromTheScales) {
   DrivenRobot robot{.left_scale = 1.03, .right_scale = 1.01, .track = 0.258 * 1.04};
   Localization localization(kOwnWheels);
