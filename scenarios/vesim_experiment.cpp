@@ -1,5 +1,5 @@
-// A car on a full-size road in traffic: tracks of other cars from two lidars and a radar, and its own position, against
-// the truth.
+// A car on a full-size road in traffic: tracks of other cars from two lidars, a camera and a radar, and its own position,
+// against the truth.
 
 #include <fmt/format.h>
 
@@ -159,8 +159,8 @@ std::vector<std::string> run_vesim_experiment(const ExperimentContext& context) 
 constexpr std::string_view kVesimReasons =
     "The tree knows the readings and their stated errors, the size of cars, and the pose at the start; the driver "
     "alone has the true pose. Lidars see ranges, so the speed of a new track is known after some readings; the radar "
-    "measures the speed along its line of sight at once. The localization takes the car for one that does not move "
-    "sideways, which it does in bends. Images are not fused.";
+    "measures the speed along its line of sight at once. The camera is a stereo camera, whose depths are fused; its "
+    "colours are not. The localization knows where the car's axles are, and takes its tyres for usual ones.";
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 #pragma once
 // Runs of a car on a full-size road in traffic, for the experiment `vesim`: tracks of cars and its own position against
-// the truth, with its lidars and its radar and with either alone.
+// the truth, with all of its sensors and with some of them.
 
 #include <array>
 #include <cstdint>
@@ -15,10 +15,13 @@ namespace sf::scenarios {
 struct VesimChoice {
   std::string_view name, inputs;
 };
-inline constexpr std::array<VesimChoice, 3> kVesimChoices{
-    {{"lidars and radar", "localization\nfeatures:0\nfeatures:1\nradar"},
+inline constexpr std::array<VesimChoice, 6> kVesimChoices{
+    {{"all", "localization\nfeatures:0\nfeatures:1\nfeatures:2\nradar"},
+     {"lidars and radar", "localization\nfeatures:0\nfeatures:1\nradar"},
+     {"camera and radar", "localization\nfeatures:2\nradar"},
      {"lidars", "localization\nfeatures:0\nfeatures:1"},
-     {"radar", "localization\nradar"}}};
+     {"radar", "localization\nradar"},
+     {"camera", "localization\nfeatures:2"}}};
 
 /// [m] ends of the classes of range
 inline constexpr std::array<double, 5> kVesimRanges{20.0, 40.0, 60.0, 80.0, 120.0};

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <string_view>
 
 #include "scenarios/vesim_runs.h"
 #include "tests/refusal.h"
@@ -19,7 +21,9 @@ VesimRun run_for(double duration, unsigned threads) {
   return run_vesim({*find_experiment("vesim"), scenario, options, device, {}}, 1);
 }
 
-VesimCell near_and_ahead(const VesimTracks& tracks) {
+VesimCell near_and_ahead(const VesimRun& run, std::string_view sensors) {
+  const auto choice = std::ranges::find(kVesimChoices, sensors, &VesimChoice::name);
+  const VesimTracks& tracks = run.tracks[static_cast<std::size_t>(choice - kVesimChoices.begin())];
   VesimCell sum;
   for (std::size_t i = 0; i < 3; ++i) {
     const VesimCell& cell = tracks.cells[0][i];
@@ -32,12 +36,16 @@ VesimCell near_and_ahead(const VesimTracks& tracks) {
 TEST(VesimExperiment, FusionFindsCarsAndLocatesItsOwnBetterThanEitherAlone) {
   const VesimRun run = run_for(12.0, 2);
   EXPECT_EQ(run.contacts, 0u);
-  const VesimCell both = near_and_ahead(run.tracks[0]), lidars = near_and_ahead(run.tracks[1]),
-                  radar = near_and_ahead(run.tracks[2]);
+  const VesimCell all = near_and_ahead(run, "all"), both = near_and_ahead(run, "lidars and radar"),
+                  lidars = near_and_ahead(run, "lidars"), radar = near_and_ahead(run, "radar"),
+                  camera = near_and_ahead(run, "camera"), cheap = near_and_ahead(run, "camera and radar");
   ASSERT_GT(both.targets, 100u);
-  EXPECT_EQ(both.targets, radar.targets) << "the same truth";
+  for (const VesimCell* each : {&all, &radar, &camera}) EXPECT_EQ(both.targets, each->targets) << "the same truth";
   EXPECT_GT(10 * both.found, 9 * both.targets);
   EXPECT_GE(both.found, lidars.found);
+  EXPECT_GT(10 * all.found, 9 * all.targets);
+  EXPECT_GT(10 * camera.found, 5 * camera.targets) << "by its depths alone";
+  EXPECT_GE(cheap.found, camera.found);
   const auto rms = [](double squares, const VesimCell& cell) {
     return std::sqrt(squares / static_cast<double>(cell.found));
   };
