@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "base/echo.h"
 #include "sensorfarm/controller.h"
 #include "sensors/lidar_beams.h"
 
