@@ -55,6 +55,14 @@ std::uint32_t srgb_color(glm::vec3 light) {
   return color;
 }
 
+std::uint32_t linear_bytes(glm::vec3 light) {
+  std::uint32_t bytes = 0;
+  for (int k = 0; k < 3; ++k)  // a comparison with NaN is false
+    bytes =
+        bytes << 8 | static_cast<std::uint32_t>(light[k] > 0.0f ? std::min(255.0f * light[k], 255.0f) + 0.5f : 0.0f);
+  return bytes;
+}
+
 void srgb_colors(const float* red, const float* green, const float* blue, std::span<std::uint32_t> out) {
   static const SrgbTable table;
   constexpr std::size_t kBlock = 16;

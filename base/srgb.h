@@ -16,7 +16,9 @@ glm::vec3 linear_color(std::uint32_t color);
 
 /// Returns 0xRRGGBB of linear light: clamped to [0, 1], and rounded exactly. NaN is 0.
 std::uint32_t srgb_color(glm::vec3 light);
-/// The same of as many lights as `out` has colours, fast where neighbours are equal.
+/// Returns 0xRRGGBB with bytes in proportion to the light, of which 1 is 255: clamped, and rounded. NaN is 0.
+std::uint32_t linear_bytes(glm::vec3 light);
+/// Returns the colours of srgb_color of as many lights as `out` has colours, fast where neighbours are equal.
 void srgb_colors(const float* red, const float* green, const float* blue, std::span<std::uint32_t> out);
 
 }  // namespace sf::base

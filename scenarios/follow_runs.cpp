@@ -11,7 +11,7 @@
 #include "base/elementary.h"
 #include "base/random.h"
 #include "vision/positioning.h"
-#include "vision/renderer.h"
+#include "vision/rendering/renderer.h"
 #include "vision/tag_family.h"
 #include "vision/testbed_patches.h"
 

@@ -19,7 +19,57 @@ struct DirectionBox {
   glm::dvec3 c, U, V, axis;
   std::array<glm::dvec3, 4> plane;
   double longest = 0.0;
+  double area = HUGE_VAL;
 };
+
+/// Returns the box of beams with one side along a unit vector across their axis. @param beam returns the i-th of them
+template <class Beam>
+DirectionBox box_along(glm::dvec3 side, glm::dvec3 axis, std::size_t count, const Beam& beam) {
+  const std::array<glm::dvec3, 2> sides{side, glm::cross(axis, side)};
+  std::array<double, 2> low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::dvec3 d = beam(i) / glm::dot(beam(i), axis);
+    for (int k = 0; k < 2; ++k)
+      low[k] = std::min(low[k], glm::dot(d, sides[k])), high[k] = std::max(high[k], glm::dot(d, sides[k]));
+  }
+  for (int k = 0; k < 2; ++k) {  // room for the rounding of rotated beams and boxes
+    const double room = 3e-6 * (1.0 + high[k] - low[k]);
+    low[k] -= room, high[k] += room;
+  }
+  DirectionBox box{.axis = axis, .area = (high[0] - low[0]) * (high[1] - low[1])};
+  box.c = axis + sides[0] * (0.5 * (low[0] + high[0])) + sides[1] * (0.5 * (low[1] + high[1]));
+  box.U = sides[0] * (0.5 * (high[0] - low[0])), box.V = sides[1] * (0.5 * (high[1] - low[1]));
+  return box;
+}
+
+/// Completes a box by its sides.
+void add_planes(DirectionBox& box) {
+  const std::array<glm::dvec3, 4> corners{box.c - box.U - box.V, box.c + box.U - box.V, box.c + box.U + box.V,
+                                          box.c - box.U + box.V};
+  for (int k = 0; k < 4; ++k) {
+    box.plane[k] = glm::normalize(glm::cross(corners[k], corners[(k + 1) % 4]));
+    if (glm::dot(box.plane[k], box.axis) < 0.0) box.plane[k] = -box.plane[k];
+    box.longest = std::max(box.longest, glm::length(corners[k]));
+  }
+}
+
+/// Returns a horizontal unit vector across an axis.
+glm::dvec3 level_side(glm::dvec3 axis) {
+  return glm::normalize(glm::cross(std::abs(axis.z) < 0.9 ? glm::dvec3{0, 0, 1} : glm::dvec3{1, 0, 0}, axis));
+}
+
+/// Returns the unit vector across an axis from one beam to another, or `level` for equal beams.
+glm::dvec3 side_along(glm::dvec3 axis, glm::dvec3 from, glm::dvec3 to, glm::dvec3 level) {
+  glm::dvec3 along = to - from;
+  along -= axis * glm::dot(along, axis);
+  return glm::length(along) > 1e-6 ? glm::normalize(along) : level;
+}
+
+void write_beam(glm::dvec3 d, std::uint32_t place, std::uint32_t at, BeamTile& tile) {
+  tile.dx[at] = d.x, tile.dy[at] = d.y, tile.dz[at] = d.z;
+  tile.x[at] = static_cast<float>(d.x), tile.y[at] = static_cast<float>(d.y), tile.z[at] = static_cast<float>(d.z);
+  tile.place[at] = place;
+}
 
 class Grouping {
  public:
@@ -145,39 +195,15 @@ void Grouping::sort_by_key() {
 
 /// Returns the smaller of two boxes: one side along the beams' first and last, or horizontal.
 DirectionBox Grouping::box_of(Range range) const {
-  const glm::dvec3 axis = mean(range);
-  const glm::dvec3 level =
-      glm::normalize(glm::cross(std::abs(axis.z) < 0.9 ? glm::dvec3{0, 0, 1} : glm::dvec3{1, 0, 0}, axis));
-  glm::dvec3 along = directions_[order_[range.second - 1]] - directions_[order_[range.first]];
-  along -= axis * glm::dot(along, axis);
+  const glm::dvec3 axis = mean(range), level = level_side(axis);
+  const auto beam = [&](std::size_t i) { return directions_[order_[range.first + i]]; };
+  const std::size_t count = range.second - range.first;
   DirectionBox best;
-  double least = HUGE_VAL;
-  for (const glm::dvec3& side : {glm::length(along) > 1e-6 ? glm::normalize(along) : level, level}) {
-    const std::array<glm::dvec3, 2> sides{side, glm::cross(axis, side)};
-    std::array<double, 2> low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
-    for (std::size_t i = range.first; i < range.second; ++i) {
-      const glm::dvec3 d = directions_[order_[i]] / glm::dot(directions_[order_[i]], axis);
-      for (int k = 0; k < 2; ++k)
-        low[k] = std::min(low[k], glm::dot(d, sides[k])), high[k] = std::max(high[k], glm::dot(d, sides[k]));
-    }
-    for (int k = 0; k < 2; ++k) {  // room for the rounding of rotated beams and boxes
-      const double room = 3e-6 * (1.0 + high[k] - low[k]);
-      low[k] -= room, high[k] += room;
-    }
-    const double area = (high[0] - low[0]) * (high[1] - low[1]);
-    if (area >= least) continue;
-    least = area;
-    best.axis = axis;
-    best.c = axis + sides[0] * (0.5 * (low[0] + high[0])) + sides[1] * (0.5 * (low[1] + high[1]));
-    best.U = sides[0] * (0.5 * (high[0] - low[0])), best.V = sides[1] * (0.5 * (high[1] - low[1]));
+  for (const glm::dvec3& side : {side_along(axis, beam(0), beam(count - 1), level), level}) {
+    const DirectionBox box = box_along(side, axis, count, beam);
+    if (box.area < best.area) best = box;
   }
-  const std::array<glm::dvec3, 4> corners{best.c - best.U - best.V, best.c + best.U - best.V, best.c + best.U + best.V,
-                                          best.c - best.U + best.V};
-  for (int k = 0; k < 4; ++k) {
-    best.plane[k] = glm::normalize(glm::cross(corners[k], corners[(k + 1) % 4]));
-    if (glm::dot(best.plane[k], axis) < 0.0) best.plane[k] = -best.plane[k];
-    best.longest = std::max(best.longest, glm::length(corners[k]));
-  }
+  add_planes(best);
   return best;
 }
 
@@ -205,10 +231,7 @@ void Grouping::write_tile(std::span<const Range> vectors, BeamTile& tile) const 
     if (range.second - range.first < kWidth) run = 1;
     for (std::uint32_t i = 0; i < kWidth; ++i) {
       const std::uint32_t at = kWidth * v + i, beam = order_[std::min(range.first + i, range.second - 1)];
-      const glm::dvec3 d = directions_[beam];
-      tile.dx[at] = d.x, tile.dy[at] = d.y, tile.dz[at] = d.z;
-      tile.x[at] = static_cast<float>(d.x), tile.y[at] = static_cast<float>(d.y), tile.z[at] = static_cast<float>(d.z);
-      tile.place[at] = beam;
+      write_beam(directions_[beam], beam, at, tile);
       if (i > 0 && beam != tile.place[at - 1] + 1) run = i % 4 == 0 ? std::min(run, 4u) : 1;
     }
   }
@@ -275,7 +298,36 @@ BeamPattern Grouping::make_image(std::uint32_t width) {
   return pattern;
 }
 
+/// Returns a box around directions in their order.
+DirectionBox box_of(std::span<const glm::dvec3> directions) {
+  glm::dvec3 sum{};
+  for (const glm::dvec3& d : directions) sum += d;
+  const glm::dvec3 axis = glm::normalize(sum),
+                   side = side_along(axis, directions.front(), directions.back(), level_side(axis));
+  DirectionBox box = box_along(side, axis, directions.size(), [&](std::size_t i) { return directions[i]; });
+  add_planes(box);
+  return box;
+}
+
 }  // namespace
+
+void fill_tile(std::span<const glm::dvec3> directions, double time, BeamTile& tile) {
+  const auto count = static_cast<std::uint32_t>(directions.size());
+  tile.used = (count + kWidth - 1) / kWidth, tile.run = kWidth, tile.time = time;
+  std::array<glm::dvec3, 4 * kTileVectors> corners;
+  double longest = 0.0;
+  for (std::uint32_t v = 0; v < tile.used; ++v) {
+    const DirectionBox box = box_of(directions.subspan(kWidth * v, std::min(kWidth, count - kWidth * v)));
+    write_box(box, tile.vectors, v);
+    longest = std::max(longest, box.longest);
+    for (std::uint32_t k = 0; k < 4; ++k)
+      corners[4 * v + k] = box.c + (k < 2 ? box.U : -box.U) + (k % 2 == 0 ? box.V : -box.V);
+  }
+  const DirectionBox all = box_of(std::span(corners).first(4 * tile.used));
+  write_box(all, tile.tile, 0);
+  tile.longest = static_cast<float>(std::max(longest, all.longest) * 1.000001);
+  for (std::uint32_t i = 0; i < kWidth * tile.used; ++i) write_beam(directions[std::min(i, count - 1)], i, i, tile);
+}
 
 BeamPattern make_pattern(std::span<const glm::dvec3> directions, std::uint32_t row, std::span<const double> times) {
   return Grouping(directions, row).make(times);

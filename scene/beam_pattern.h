@@ -48,4 +48,11 @@ BeamPattern make_pattern(std::span<const glm::dvec3> directions, std::uint32_t r
 /// @param directions as make_pattern's, row by row  @param width [px]
 BeamPattern make_image_pattern(std::span<const glm::dvec3> directions, std::uint32_t width);
 
+/// Least cosine of the angle between the first and any other beam of fill_tile.
+inline constexpr double kLeastTileCosine = 0.9;
+/// Fills a tile with beams, in their order: sixteen after each other are a vector, and their places are their numbers.
+/// Boxes of unused vectors have no meaning. For beams that are cast once: much faster than make_pattern.
+/// @param directions unit vectors of 1 to kTileBeams neighbours  @param time [s] of all
+void fill_tile(std::span<const glm::dvec3> directions, double time, BeamTile& tile);
+
 }  // namespace sf::scene

@@ -79,6 +79,7 @@ class Cameras : public SpatialScans {
   void finish(std::size_t sample, unsigned thread) override;
   void write_pixels(std::size_t sample);
   void add_depth_noise(std::size_t sample);
+  std::vector<glm::vec3> blurred_light(std::size_t sample);
   std::uint32_t color_of(std::size_t sample, std::size_t pixel, std::span<const glm::vec3> light) const;
 
   const std::vector<CameraSettings>& settings_;
@@ -157,28 +158,38 @@ void Cameras::follow(std::size_t i, const base::RigidTransform& X_WS, const scen
   }
 }
 
+/// Returns the light of all pixels, blurred by the lens.
+std::vector<glm::vec3> Cameras::blurred_light(std::size_t i) {
+  const CameraSettings& s = settings_[samples()[i].row];
+  const std::span<const glm::vec3> light = parts_of(part_light_, i);
+  std::vector<glm::vec3> image(s.width * s.height);
+  for (std::size_t c = 0; c < light.size() / s.samples; ++c) {
+    glm::vec3& pixel = image[s.beams->cast.empty() ? c : s.beams->cast[c]];
+    for (const glm::vec3& each : light.subspan(c * s.samples, s.samples)) pixel += each;
+    pixel /= static_cast<float>(s.samples);
+  }
+  LensBlur(s.response.blur).apply(image, s.width);
+  return image;
+}
+
 /// @param light of the samples of a pixel
 std::uint32_t Cameras::color_of(std::size_t i, std::size_t pixel, std::span<const glm::vec3> light) const {
   const HostSample& sample = samples()[i];
   const CameraSettings& s = settings_[sample.row];
   glm::vec3 sum{};
   for (const glm::vec3& each : light) sum += each;
-  glm::dvec3 mean = s.gain / static_cast<double>(light.size()) * glm::dvec3(sum);
-  if (s.vignetting > 0.0) {
-    const glm::dvec2 corner = 0.5 * glm::dvec2(s.width - 1.0, s.height - 1.0),
-                     from = glm::dvec2(pixel % s.width, pixel / s.width) - corner;
-    mean *= 1.0 - s.vignetting * glm::dot(from, from) / std::max(1.0, glm::dot(corner, corner));
-  }
-  if (noise_ && s.is_noisy()) {
+  glm::dvec3 mean = s.response.gain / static_cast<double>(light.size()) * glm::dvec3(sum);
+  mean *= s.response.falloff({pixel % s.width, pixel / s.width}, {s.width, s.height});
+  if (noise_ && s.response.is_noisy()) {
     const SensorSpec& row = rows()[sample.row];
     const base::RandomKey key =
         episodes().key(base::RandomStream::spatial_range, row.mover, kNoiseId + row.sensor, sample.sequence);
     const auto index = static_cast<std::uint32_t>(2 * pixel);
     const auto a = base::random_normal(key, index), b = base::random_normal(key, index + 1);
     const glm::dvec3 normal = s.mono ? glm::dvec3(a[0]) : glm::dvec3(a[0], a[1], b[0]);
-    for (int k = 0; k < 3; ++k) mean[k] += normal[k] * std::sqrt(s.read_noise * s.read_noise + s.shot_noise * mean[k]);
+    for (int k = 0; k < 3; ++k) mean[k] += normal[k] * s.response.noise_of(mean[k]);
   }
-  return base::srgb_color(glm::vec3(mean));
+  return s.linear ? base::linear_bytes(glm::vec3(mean)) : base::srgb_color(glm::vec3(mean));
 }
 
 /// Pixels of a whole image without a surface.
@@ -214,12 +225,17 @@ void Cameras::write_pixels(std::size_t i) {
   const bool plain = s.is_plain();
   const auto light = s.rgb && !plain ? parts_of(part_light_, i) : std::span<glm::vec3>();
   const auto colors = s.rgb && plain ? parts_of(part_colors_, i) : std::span<std::uint32_t>();
+  const std::vector<glm::vec3> blurred = s.response.blur > 0.0 ? blurred_light(i) : std::vector<glm::vec3>();
+  const auto light_of = [&](std::size_t c, std::size_t k) -> std::span<const glm::vec3> {
+    if (blurred.empty()) return light.subspan(c * parts, parts);
+    return {&blurred[k], 1};
+  };
   for (std::size_t c = 0; c < from.ranges.size() / parts; ++c) {
     const std::size_t k = cast.empty() ? c : cast[c], first = c * parts;
     const std::span<double> pixel = sample.values.subspan(k * width, width);
     hits[k] = from.hits[first], quality[k] = from.quality[first];
     pixel[0] = from.ranges[first];
-    if (width > 1) pixel[1] = !s.rgb ? 0.0 : plain ? colors[c] : color_of(i, k, light.subspan(first, parts));
+    if (width > 1) pixel[1] = !s.rgb ? 0.0 : plain ? colors[c] : color_of(i, k, light_of(c, k));
     const glm::vec3 normal = s.normals ? from.normals[first] : glm::vec3{};
     for (std::size_t axis = 0; axis + 2 < width; ++axis) pixel[2 + axis] = normal[static_cast<int>(axis)];
   }
@@ -262,7 +278,7 @@ ParsedSensors parse_cameras(const world::World& world) {
     const double reach = s.range_max * stretch(s);
     if (!(s.rgb && sunny)) row.reach = reach;  // shadows come from anywhere
     // Else readings also depend on these, on earlier poses, or on noise in colours.
-    const bool near = !(s.rgb && sunny) && s.beams->times.empty() && !s.is_noisy();
+    const bool near = !(s.rgb && sunny) && s.beams->times.empty() && !s.response.is_noisy();
     row.dependency_radius = near ? reach : 0.0;
     return s;
   });

@@ -21,6 +21,7 @@ constexpr std::uint32_t kMostSamples = 64;
 constexpr std::uint32_t kMostCameraBeams = 4'000'000;  ///< of one camera
 constexpr double kMostFocal = 1e6;                     ///< [px]
 constexpr double kMostDepthNoise = 0.25;               ///< [-] of the largest depth, whose noise is never below 0 then
+constexpr double kMostBlur = 20.0;                     ///< [px]
 
 void read_resolution(const world::Sensor& sensor, CameraSettings& s) {
   if (const auto size = tuple(sensor, "resolution", 2, "[width height]")) {
@@ -107,7 +108,7 @@ void read_colours(const world::Sensor& sensor, CameraSettings& s) {
   s.rgb = whole(sensor, "rgb", 0, 0, 1) == 1;
   if (s.rgb && s.mono) refuse(sensor, "mono", "'rgb' and 'mono'; expected one of them");
   s.rgb = s.rgb || s.mono;
-  for (const char* key : {"jpeg", "samples", "exposure", "gain", "vignetting", "noise"})
+  for (const char* key : {"jpeg", "samples", "exposure", "gain", "vignetting", "noise", "blur", "linear"})
     if (!s.rgb && find(sensor, key) != nullptr)
       refuse(sensor, key, fmt::format("'{}' changes colours; expected 'rgb 1' or 'mono 1' with it", key));
   s.jpeg = static_cast<int>(whole(sensor, "jpeg", 0, 0, 100));
@@ -116,8 +117,13 @@ void read_colours(const world::Sensor& sensor, CameraSettings& s) {
     refuse(sensor, "samples",
            fmt::format("{} x {} pixels of {} samples; expected at most {} in all", s.width, s.height, s.samples,
                        kMostCameraBeams));
+  s.linear = whole(sensor, "linear", 0, 0, 1) == 1;
+}
+
+void read_response(const world::Sensor& sensor, CameraResponse& s) {
   s.gain = number(sensor, "gain", 1.0, 0.0, 1e6);
   s.vignetting = number(sensor, "vignetting", 0.0, 0.0, 1.0);
+  s.blur = number(sensor, "blur", 0.0, 0.0, kMostBlur);
   const auto noise = tuple(sensor, "noise", 1, "[dark shot]: a standard deviation, and a variance per light");
   if (!noise) return;
   s.read_noise = (*noise)[0], s.shot_noise = noise->size() > 1 ? (*noise)[1] : 0.0;
@@ -145,9 +151,9 @@ void read_times(const world::Sensor& sensor, CameraSettings& s) {
 std::vector<double> times_of(const CameraSettings& s, LidarBeams& beams) {
   std::vector<double> times;
   if (s.exposure == 0.0 && s.readout == 0.0) return times;
+  const Shutter shutter{s.exposure, s.readout, s.height, s.samples};
   const auto time_of = [&](std::size_t pixel, std::uint32_t sample) {
-    const double rows = static_cast<double>(s.height - 1 - pixel / s.width);
-    return -s.readout * rows / s.height - s.exposure * sample / s.samples;
+    return shutter.time_of(pixel / s.width, sample);
   };
   for (std::size_t i = 0; i < beams.directions.size(); ++i) beams.times.push_back(time_of(i, s.samples - 1));
   for (std::size_t part = 0; part < beams.cast_directions().size(); ++part) {
@@ -217,6 +223,7 @@ CameraSettings CameraReader::read(const world::Sensor& sensor) {
   read_depths(sensor, s);
   s.normals = whole(sensor, "normals", 0, 0, 1) == 1;
   read_colours(sensor, s);
+  read_response(sensor, s.response);
   read_times(sensor, s);
   s.beams = beams_of(sensor, s);
   return s;

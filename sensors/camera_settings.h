@@ -10,6 +10,7 @@
 #include "base/jpeg.h"
 #include "base/lens.h"
 #include "base/rigid_transform.h"
+#include "sensors/camera_response.h"
 #include "sensors/lidar_beams.h"
 
 namespace sf::sensors {
@@ -27,29 +28,25 @@ struct CameraSettings {
   bool mono = false;          ///< and these are grey, of the luminance (Rec. 709)
   int jpeg = 0;               ///< quality of JPEG files in packets and messages, in [1, 100]; 0: PNG
   std::uint32_t samples = 1;  ///< beams per pixel; depths, labels and normals are those of the first
-  double exposure = 0.0;      ///< [s] before the time of a row, divided among its samples
-  double readout = 0.0;       ///< [s] from the first row to one below the last (rolling shutter); 0: all at once
-  // Of the colours, linear in the light:
-  double gain = 1.0;        ///< >= 0
-  double vignetting = 0.0;  ///< in [0, 1]: part of the light lost in the corners of the image
-  double read_noise = 0.0;  ///< >= 0, standard deviation in the dark
-  double shot_noise = 0.0;  ///< >= 0, variance per light: photon noise
+  double exposure = 0.0;      ///< [s] as Shutter::exposure
+  double readout = 0.0;       ///< [s] as Shutter::readout
+  CameraResponse response;    ///< of the colours
+  bool linear = false;        ///< colours are stored linear in the light, else as sRGB
   std::shared_ptr<const LidarBeams>
       beams;  ///< one per pixel, with a part per sample; pixels that see nothing are not cast
 
   std::size_t columns() const { return normals ? 5 : rgb ? 2 : 1; }  ///< numbers per pixel: depth, colour, normal
   /// Returns whether the colour of a pixel is that of its one beam.
-  bool is_plain() const { return samples == 1 && gain == 1.0 && vignetting == 0.0 && !is_noisy(); }
+  bool is_plain() const { return samples == 1 && response.is_ideal() && !linear; }
   int jpeg_quality() const { return jpeg > 0 ? jpeg : base::kJpegQuality; }  ///< of files that are to be JPEG
   base::ColorFormat format() const { return {width, height, mono, jpeg}; }
-  bool is_noisy() const { return read_noise > 0.0 || shot_noise > 0.0; }          ///< of colours
   double depth_sigma(double depth) const { return depth_noise * depth * depth; }  ///< [m] standard deviation
 };
 
 inline constexpr std::string_view kCameraKeys[] = {
-    "resolution", "fov",  "focal",      "principal", "distortion", "fisheye",  "range",
-    "normals",    "rgb",  "mono",       "jpeg",      "samples",    "exposure", "rolling",
-    "scan_time",  "gain", "vignetting", "noise",     "pose6",      "pantilt",  "depth_noise"};
+    "resolution", "fov",   "focal", "principal", "distortion", "fisheye", "range",      "normals",
+    "rgb",        "mono",  "jpeg",  "samples",   "exposure",   "rolling", "scan_time",  "gain",
+    "vignetting", "noise", "blur",  "linear",    "pose6",      "pantilt", "depth_noise"};
 
 /// Reads the settings of cameras. Cameras with equal images share their beams.
 class CameraReader {

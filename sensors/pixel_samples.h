@@ -1,6 +1,7 @@
 #pragma once
-// Places of a pixel's samples.
+// Places and times of a pixel's samples.
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/ext/vector_double2.hpp>
 #include <vector>
@@ -20,6 +21,20 @@ class PixelSamples {
 
  private:
   std::vector<glm::dvec2> places_;  ///< of the lattice
+};
+
+/// When the samples of an image are cast.
+struct Shutter {
+  double exposure = 0.0;      ///< [s] before the time of a row, divided among its samples
+  double readout = 0.0;       ///< [s] from the first row to one below the last (rolling shutter); 0: all at once
+  std::uint32_t height = 1;   ///< [px] > 0
+  std::uint32_t samples = 1;  ///< per pixel, > 0
+
+  /// Returns the time [s] <= 0 of a sample, relative to the first sample of the last row.
+  double time_of(std::size_t row, std::uint32_t sample) const {
+    const auto rows = static_cast<double>(height - 1 - row);
+    return -readout * rows / height - exposure * sample / samples;
+  }
 };
 
 }  // namespace sf::sensors

@@ -48,11 +48,12 @@ const std::map<std::string, Modules> kMayInclude{
     {"bridges", {"netio", "record", "scene", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"selftest", {"farm", "scene", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"vision", {"world", "base"}},
+    {"vision/rendering", {"vision", "sensors", "scene", "base"}},
     {"viz", {"farm", "record", "sensors", "scene", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"cluster", {"base"}},
     {"scenarios",
-     {"selftest", "cluster", "viz", "vision", "server", "bridges", "netio", "record", "farm", "control", "sensors",
-      "raycast", "maps", "robots/estimation", "robots", "world", "gpu", "base"}},
+     {"selftest", "cluster", "viz", "vision/rendering", "vision", "server", "bridges", "netio", "record", "farm",
+      "control", "sensors", "raycast", "maps", "robots/estimation", "robots", "world", "gpu", "base"}},
 };
 const Modules kMayIncludeAnything{"apps", "examples", "library", "bench", "tests"};
 

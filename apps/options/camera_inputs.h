@@ -14,7 +14,7 @@
 #include "vision/positioning.h"
 #include "vision/rendered_fleet.h"
 #include "vision/rendered_robots.h"
-#include "vision/renderer.h"
+#include "vision/rendering/renderer.h"
 
 namespace sf::apps {
 

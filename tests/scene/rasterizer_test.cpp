@@ -340,5 +340,27 @@ TEST(SpatialRasterizer, ImagesHaveTheBytesOfAnyPattern) {
   }
 }
 
+/// Tiles that are filled at once, with full and partly full vectors, have the bytes of any pattern.
+TEST(SpatialRasterizer, FilledTilesHaveTheBytesOfAnyPattern) {
+  const SurfaceTree tree = build_tree(soup(60, 8.0, 3)), box = build_tree(soup(5, 8.0, 4));
+  const std::array instances{still(tree), Instance{&box, Posed(3, 2.0).X_WS, false}};
+  const SceneView scene{instances, true};
+  BeamTile tile;
+  for (const std::size_t count :
+       {std::size_t{512}, std::size_t{1}, std::size_t{16}, std::size_t{49}, std::size_t{500}}) {
+    std::vector<glm::dvec3> beams;  // a row, whose second half is a line below the first
+    for (std::size_t i = 0; i < count; ++i)
+      beams.push_back(glm::normalize(glm::dvec3{400.0, 128.0 - static_cast<double>(i % 256), i < 256 ? 30.0 : 29.0}));
+    fill_tile(beams, 0.25, tile);
+    EXPECT_EQ(tile.time, 0.25);
+    const SpatialScan general = cast(Posed(5).X_WS, beams, 30.0, scene);
+    SpatialScan filled{std::vector<double>(kTileBeams, -1.0), std::vector<std::uint32_t>(kTileBeams, 0xDEADu),
+                       std::vector<base::QualityFlag>(kTileBeams), general.uncertain};
+    Rasterizer().scan(Posed(5).X_WS, {&tile, 1}, 30.0, scene, {filled.ranges, filled.hits, filled.quality});
+    filled.ranges.resize(count), filled.hits.resize(count), filled.quality.resize(count);
+    EXPECT_EQ(filled, general) << count;
+  }
+}
+
 }  // namespace
 }  // namespace sf::scene

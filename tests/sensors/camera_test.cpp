@@ -357,6 +357,52 @@ TEST(Camera, DepthNoiseGrowsWithTheSquare) {
   EXPECT_NEAR(lost / far, 0.1085, 5.0 * std::sqrt(0.1 / far)) << "0.5 m beyond 9 m are 1.235 standard deviations";
 }
 
+std::vector<double> greys_of(const Image& image) {
+  std::vector<double> greys;
+  for (std::size_t i = 1; i < image.values.size(); i += 2) greys.push_back(static_cast<int>(image.values[i]) & 255);
+  return greys;
+}
+
+/// Bytes of `linear 1` are in proportion to the light, of one sample and of several.
+TEST(Camera, LinearBytes) {
+  const std::string keys = "resolution [40 30] fov 80 range [0 50] mono 1 ";
+  for (const char* const more : {"", "samples 4"}) {
+    const auto srgb = greys_of(shoot(boards(keys + more))),
+               linear_greys = greys_of(shoot(boards(keys + more + " linear 1")));
+    for (std::size_t i = 0; i < srgb.size(); ++i)
+      ASSERT_NEAR(linear_greys[i], 255.0 * linear(static_cast<int>(srgb[i])), 1.6) << "a step of sRGB is up to 2.2";
+    EXPECT_NE(srgb, linear_greys);
+  }
+}
+
+/// A blurred image is the sharp one under a Gaussian, continued beyond its borders, and only there differs from it.
+TEST(Camera, BlurIsGaussian) {
+  constexpr int kWidth = 40, kHeight = 30;
+  const auto shot = [](const std::string& keys) {
+    return greys_of(shoot(boards("resolution [40 30] fov 80 range [0 50] mono 1 linear 1 samples 4 " + keys)));
+  };
+  const auto sharp = shot("");
+  EXPECT_EQ(shot("blur 0"), sharp);
+  for (const double sigma : {0.6, 2.0}) {
+    const auto blurred = shot(fmt::format("blur {}", sigma));
+    double most = 0.0;
+    for (int v = 0; v < kHeight; ++v)
+      for (int u = 0; u < kWidth; ++u) {
+        double sum = 0.0, weights = 0.0;
+        for (int y = -12; y <= 12; ++y)
+          for (int x = -12; x <= 12; ++x) {
+            const double weight = std::exp(-0.5 * (x * x + y * y) / (sigma * sigma));
+            const int row = std::clamp(v + y, 0, kHeight - 1), column = std::clamp(u + x, 0, kWidth - 1);
+            sum += weight * sharp[static_cast<std::size_t>(row * kWidth + column)], weights += weight;
+          }
+        const auto i = static_cast<std::size_t>(v * kWidth + u);
+        ASSERT_NEAR(blurred[i], sum / weights, 1.0) << "rounded twice, at " << u << ' ' << v;
+        most = std::max(most, std::abs(blurred[i] - sharp[i]));
+      }
+    EXPECT_GT(most, 20.0);
+  }
+}
+
 /// Luminance of linear light, of one sample and of several; noise has one number per pixel.
 TEST(Camera, GreyIsTheLuminance) {
   const std::string keys = "resolution [40 30] fov 80 range [0 50] ";
@@ -530,6 +576,9 @@ TEST(Camera, ImpossibleSettingsAreRefused) {
   expect_in("19200 different times; expected at most 10000",
             refused("rgb 1 samples 64 exposure 0.01 rolling 1 resolution [4 300]"));
   expect_in("'noise' is negative", refused("rgb 1 noise [-1]"));
+  expect_in("'blur' changes colours; expected 'rgb 1' or 'mono 1'", refused("blur 1"));
+  expect_in("'linear' changes colours; expected 'rgb 1' or 'mono 1'", refused("linear 1"));
+  expect_in("'blur'", refused("rgb 1 blur 21"));
   expect_in("1000 x 1000 pixels of 5 samples; expected at most 4000000",
             refused("rgb 1 samples 5 resolution [1000 1000]"));
   expect_in("no pixel sees anything", refused("fisheye [0 0 0 0] principal [5000 0]"));

@@ -10,7 +10,7 @@
 #include "tests/vision/images_in_memory.h"
 #include "vision/calibration.h"
 #include "vision/rendered_fleet.h"
-#include "vision/renderer.h"
+#include "vision/rendering/renderer.h"
 
 namespace sf::vision {
 

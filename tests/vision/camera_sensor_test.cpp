@@ -133,8 +133,10 @@ TEST(CameraSensor, TagsAreWhereThePositioningSystemFindsThem) {
   // Looks down with its right along x, on a robot without a body that could be seen.
   std::string text =
       "sunlight 0 skylight 1 floor_color \"gray60\"\n"
-      "position( obstacle_return 0 size [0.1 0.1 0.1] origin [0 0 0 0] camera( resolution [640 480] rgb 1 samples 12 "
-      "focal [832 832] principal [322.6 236.3] distortion [-0.18 0.06 0.0005 -0.0004 0] pose6 [0 0 3.2 0 90 90] ) )\n";
+      "position( obstacle_return 0 size [0.1 0.1 0.1] origin [0 0 0 0] camera( resolution [640 480] pose6 [0 0 3.2 0 "
+      "90 "
+      "90] mono 1 linear 1 samples 12 blur 0.6 focal [832 832] principal [322.6 236.3] "
+      "distortion [-0.18 0.06 0.0005 -0.0004 0] ) )\n";
   std::map<std::uint32_t, base::Pose> tags;
   for (std::uint32_t id = 0; id < 6; ++id) {
     tags[id] = {0.7 * (id % 3) - 0.69, 0.8 * (id / 3) - 0.41, 0.2, 0.4 * id - 1.1};

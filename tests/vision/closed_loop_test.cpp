@@ -17,7 +17,7 @@
 #include "tests/device.h"
 #include "vision/positioning.h"
 #include "vision/rendered_robots.h"
-#include "vision/renderer.h"
+#include "vision/rendering/renderer.h"
 
 namespace sf::vision {
 

@@ -11,7 +11,7 @@
 #include "tests/vision/cameras.h"
 #include "vision/accuracy.h"
 #include "vision/positioning.h"
-#include "vision/renderer.h"
+#include "vision/rendering/renderer.h"
 #include "vision/tag_family.h"
 
 namespace sf::vision {

@@ -9,7 +9,7 @@
 
 #include "tests/refusal.h"
 #include "vision/positioning.h"
-#include "vision/renderer.h"
+#include "vision/rendering/renderer.h"
 #include "vision/tag_family.h"
 #include "vision/testbed_patches.h"
 

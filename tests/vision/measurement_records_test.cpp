@@ -8,7 +8,7 @@
 #include "tests/golden.h"
 #include "tests/vision/cameras.h"
 #include "vision/accuracy.h"
-#include "vision/renderer.h"
+#include "vision/rendering/renderer.h"
 #include "vision/tag_detector.h"
 #include "vision/tracker.h"
 

@@ -10,7 +10,7 @@
 #include "tests/refusal.h"
 #include "tests/vision/cameras.h"
 #include "tests/vision/images_in_memory.h"
-#include "vision/renderer.h"
+#include "vision/rendering/renderer.h"
 #include "vision/testbed_patches.h"
 
 namespace sf::vision {
@@ -71,9 +71,10 @@ TEST(Placement, FindsTheCameraFromSurveyedTags) {
     ImagesInMemory images = pictures(testbed);
     const Placement found = place_camera(testbed, unplaced(), images, "album");
     EXPECT_LT(found.residual, 0.1);
-    EXPECT_LT(glm::distance(found.camera.position, truth().position), 0.005);
-    EXPECT_GT(glm::dot(found.camera.forward, truth().forward), std::cos(0.001));
-    EXPECT_GT(glm::dot(found.camera.right, truth().right), std::cos(0.001));
+    // Four points alone hardly tell a tilt from a displacement: 4.3 mm RMS over 24 turns of the tags, at most 10.3.
+    EXPECT_LT(glm::distance(found.camera.position, truth().position), headings ? 0.005 : 0.015);
+    EXPECT_GT(glm::dot(found.camera.forward, truth().forward), std::cos(headings ? 0.001 : 0.004));
+    EXPECT_GT(glm::dot(found.camera.right, truth().right), std::cos(headings ? 0.001 : 0.004));
     ASSERT_EQ(found.tags.size(), 4u);
     EXPECT_EQ(found.tags[0].images, 2u);
     EXPECT_LT(found.tags[3].metres, 0.001);

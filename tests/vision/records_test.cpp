@@ -9,7 +9,7 @@
 #include "tests/vision/cameras.h"
 #include "vision/overlay.h"
 #include "vision/rendered_fleet.h"
-#include "vision/renderer.h"
+#include "vision/rendering/renderer.h"
 
 namespace sf::vision {
 

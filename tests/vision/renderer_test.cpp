@@ -1,6 +1,6 @@
 // Rendered images: geometry, light, noise, and independence of anything but their arguments.
 
-#include "vision/renderer.h"
+#include "vision/rendering/renderer.h"
 
 #include <gtest/gtest.h>
 
@@ -90,6 +90,22 @@ TEST(Renderer, HigherPatchesHideLowerOnes) {
   EXPECT_EQ(*image.at(150, 60), 0);
 }
 
+TEST(Renderer, LaterPatchesHideEarlierOnesOfTheirHeight) {
+  Scene scene = bare(0.0);
+  for (const double albedo : {0.2, 0.4, 0.6, 0.8})
+    scene.patches.push_back(patch_of(glm::dvec2{0.5 - 0.5 * albedo}, albedo));
+  const Image image = rendered(small_camera(), perfect(), scene);
+  for (const auto& [u, grey] : {std::pair(80, 204), std::pair(95, 153), std::pair(110, 102), std::pair(125, 51)})
+    EXPECT_EQ(*image.at(u, 60), grey) << u;
+}
+
+TEST(Renderer, PatchesBelowTheFloorAreSeen) {
+  Scene scene = bare(0.5);
+  scene.patches.push_back(patch_of({0.1, 0.1}, 0.2));
+  scene.patches[0].X_WP.z = -0.02;  // the body under a tag on the floor
+  EXPECT_EQ(*rendered(small_camera(), perfect(), scene).at(80, 60), 51);
+}
+
 TEST(Renderer, BlackPatchesHideTheFloor) {
   Scene scene = bare(0.5);
   scene.patches.push_back(patch_of({0.1, 0.1}, 0.0));
@@ -127,6 +143,26 @@ TEST(Renderer, ReadsRowsOneAfterAnother) {
   };
   EXPECT_EQ(left_edge(0), 55);  // -0.1 m
   EXPECT_NEAR(left_edge(100) - left_edge(0), 25, 1);
+}
+
+/// Rows share times where this displaces no patch by more than a hundredth of a pixel.
+TEST(Renderer, RowsHaveTheirTimesToAHundredthOfAPixel) {
+  Camera camera = small_camera();
+  camera.readout = 0.119;
+  for (const double speed : {0.02, 0.2, 2.0}) {  // 0.005, 0.05 and 0.5 px a row
+    Scene scene = bare(0.0);
+    Patch patch = patch_of({0.2, 2.0}, 1.0);
+    patch.X_WP.x = 0.0005;  // the left edge is within a pixel
+    patch.velocity = {speed, 0.0};
+    scene.patches.push_back(patch);
+    const Image image = rendered(camera, perfect(), scene);
+    for (const int v : {0, 1, 2, 3, 4, 5, 6, 7}) {
+      double dark = 0.0;  // [px] left of the edge
+      for (int u = 0; u < 80; ++u) dark += 1.0 - *image.at(u, v) / 255.0;
+      const double x = 0.0005 - 0.1 + speed * 0.001 * v;
+      EXPECT_NEAR(dark, 79.5 + x / 0.004 + 0.5, 0.01 + 0.03) << speed << ' ' << v << ": 1 of 32 samples";
+    }
+  }
 }
 
 TEST(Renderer, NoiseHasTheStatedVariance) {

@@ -11,7 +11,7 @@
 #include "tests/units.h"
 #include "tests/vision/cameras.h"
 #include "vision/bch_code.h"
-#include "vision/renderer.h"
+#include "vision/rendering/renderer.h"
 #include "vision/tag_detector.h"
 
 namespace sf::vision {

@@ -1,6 +1,6 @@
 #pragma once
-// Renders images of a simulated testbed as a camera takes them: perspective, distortion, motion blur, rolling shutter,
-// lens blur, vignetting, uneven light, noise.
+// Renders images of a simulated testbed as a camera takes them. Beams, samples of pixels, exposure and rolling shutter,
+// and the response to light are those of the farm's cameras (sensors/camera.h).
 
 #include <cstdint>
 #include <memory>
@@ -12,12 +12,10 @@
 namespace sf::vision {
 
 /// Renders the images of one camera. An image is a function of (camera, scene, imaging, seed, frame, time), independent
-/// of the order of calls. Pixels at edges average `kSamples` points over the pixel and the exposure, in a
-/// low-discrepancy sequence; uniform pixels use fewer samples. Not thread-safe.
+/// of the order of calls. Pixels near patches have eight samples, spread over the pixel and the exposure, and 32 where
+/// these differ. Grey values are linear in the light. Not thread-safe.
 class Renderer {
  public:
-  static constexpr int kSamples = 32;
-
   /// Computes the ray of each pixel.
   Renderer(const Camera& camera, const Imaging& imaging, std::uint64_t seed);
   ~Renderer();
