@@ -1,5 +1,5 @@
-// A car on a full-size road in traffic: tracks of other cars from two lidars, a camera and a radar, and its own position,
-// against the truth.
+// A car on a full-size road in traffic: tracks of other cars from two lidars, a camera and a radar, and its own
+// position, against the truth.
 
 #include <fmt/format.h>
 
