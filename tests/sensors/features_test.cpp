@@ -85,9 +85,8 @@ TEST(Features, OfALidarAreAboveTheGroundAndBelowBridges) {
             "bot( name \"r0\" pose [0 0 0 0] )\n" +
             more,
         {.sensors = sensors::world_file_words()});
-    Rows valid;
-    for (const auto& row : readings_of(world).back())
-      if (row[3] != 0.0) valid.push_back(row);
+    Rows valid = readings_of(world).back();
+    std::erase_if(valid, [](const auto& row) { return row[3] == 0.0; });
     return valid;
   };
   EXPECT_TRUE(rows_in("").empty()) << "the floor is no obstacle";
