@@ -5,6 +5,7 @@
 
 #include "base/echo.h"
 #include "base/elementary.h"
+#include "sensors/settings.h"
 
 namespace sf::sensors {
 
