@@ -25,8 +25,8 @@ World shipped(const std::string& name) {
   static constexpr std::string_view kSeen[] = {"range_max", "range_max_id", "fov", "noise"};
   static constexpr std::string_view kCones[] = {"scount", "spose[]", "fov", "range", "firing", "arrays", "noise"};
   static constexpr std::string_view kBeams[] = {
-      "preset",     "channels", "columns", "fov_v",   "range",   "pose6",     "noise",   "fov",
-      "resolution", "rgb",      "normals", "samples", "detects", "gyro_bias", "targets", "detection_range"};
+      "preset", "channels", "columns", "fov_v",   "range",     "pose6",   "noise",           "fov",        "resolution",
+      "rgb",    "normals",  "samples", "detects", "gyro_bias", "targets", "detection_range", "depth_noise"};
   static constexpr std::string_view kComputed[] = {"type",   "inputs",   "most",   "agility", "speed",
                                                    "extent", "shortest", "widest", "objects"};
   static constexpr SensorKeyword kWords[] = {kLaserWords[0],
